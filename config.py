@@ -15,7 +15,9 @@ Examples
 from __future__ import annotations
 
 import json
+import math
 import os
+import sys
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import Field as _Field
@@ -50,6 +52,7 @@ __all__ = [
     "Config",
     "PhysicsConfig",
     "ReportConfig",
+    "SearchConfig",
     "StonesConfig",
     "TablesConfig",
     "VideoConfig",
@@ -114,6 +117,8 @@ def _one_of(known: Iterable[str]) -> Check:
     return check
 
 
+NONNEGATIVE = Limits(0.0, sys.float_info.max, "a number, 0 or more").check
+LENGTH = Limits(math.ulp(0.0), 100.0, "a positive number, at most 100").check
 _TEXT, _PATH = _instance("a text", str), _instance("a path", str, os.PathLike)
 _YES_NO = _instance("True or False", bool)
 
@@ -246,6 +251,61 @@ class StonesConfig(_Section):
 
 
 @dataclass(frozen=True)
+class SearchConfig(_Section):
+    """Where stones are searched for, and what they must show.
+
+    The coordinates are those of the ice. Both ends of the sheet are searched, since cameras stand
+    at either end.
+
+    Attributes
+    ----------
+    search_half_width, search_half_length : float
+        Stones are searched for on |x| and |y| up to these, m.
+    search_radius_px, tracking_radius_px : float
+        Radius of a disc on the rectified map: for a single frame, and for a clip, where the next
+        frames show what one hides.
+    search_min_response, tracking_min_response : float
+        Template response (0 to 2) from which a place is examined, in the same two cases.
+    min_visible_ratio : float
+        Share of the rays that must look like a stone.
+    min_evidence, min_disc_evidence : float
+        Least evidence for a stone (0 to about 3), and for a plain disc (0 to 1).
+    min_repeated_evidence : float
+        Least evidence for a stone where one was seen a moment ago.
+    max_centre_shift_ratio : float
+        Largest distance of a centre from the peak of the response, in radii of cap or disc.
+    """
+
+    search_half_width: float = setting(2.40, "stones are searched for on |x| up to", LENGTH, "m")
+    search_half_length: float = setting(9.0, "stones are searched for on |y| up to", LENGTH, "m")
+    search_radius_px: float = setting(
+        11.6, "radius of a disc on the map of a single frame", POSITIVE.check, "px"
+    )
+    search_min_response: float = setting(
+        0.45, "template response (0 to 2) from which a place is examined", NONNEGATIVE
+    )
+    tracking_radius_px: float = setting(
+        6.5, "radius of a disc on the map of a clip's frame", POSITIVE.check, "px"
+    )
+    tracking_min_response: float = setting(
+        0.3, "template response from which a place is examined in a clip", NONNEGATIVE
+    )
+    min_visible_ratio: float = setting(
+        0.30, "share of the rays that must look like a stone", FRACTION.check
+    )
+    min_evidence: float = setting(1.05, "least evidence for a stone (0 to 3)", NONNEGATIVE)
+    min_repeated_evidence: float = setting(
+        0.7, "least evidence where a stone was seen a moment ago", NONNEGATIVE
+    )
+    min_disc_evidence: float = setting(
+        0.6, "least evidence for a plain disc (0 to 1)", FRACTION.check
+    )
+    max_centre_shift_ratio: float = setting(
+        0.35, "largest distance of a centre from the peak, in radii", NONNEGATIVE
+    )
+
+
+@dataclass(frozen=True)
 class TablesConfig(_Section):
     """How tables of tracks are read.
 
@@ -326,6 +386,7 @@ class Config:
     tables : TablesConfig
     physics : PhysicsConfig
     report : ReportConfig
+    search : SearchConfig
 
     Examples
     --------
@@ -343,6 +404,7 @@ class Config:
     tables: TablesConfig = field(default_factory=TablesConfig)
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     report: ReportConfig = field(default_factory=ReportConfig)
+    search: SearchConfig = field(default_factory=SearchConfig)
 
     def replace(self, **settings: Any) -> Self:
         """Return a copy with other values of some settings, each by its own name.

@@ -180,7 +180,7 @@ def analyse(
     contacts = find_contacts(detections, radius)
     fit = estimate(detections, contacts, radius=radius, masses=masses)
     hits = times_of_hits(contacts, fit.collisions)
-    tracks = smooth(detections, hits, radius=radius, masses=masses, unseen=measured.repeats)
+    tracks = smooth(detections, hits, radius=radius, masses=masses, duplicates=measured.duplicates)
     replay = simulate_measured(tracks, fit, radius=radius, masses=masses)
     laws = laws_to_assume(radius, config.physics.restitution, config.physics.friction)
     predictions = predict(detections, tracks, fit, radius=radius, masses=masses, laws=laws)
@@ -189,6 +189,7 @@ def analyse(
     # A clip shows the house; tables may have their origin anywhere.
     placed = measured.clip is None and measured.house is not None
     sheet = not placed or along_sheet(tracks, first_hit(fit.collisions), radius)
+    house = measured.house if sheet else None
     team_of = teams(tracks)
     warnings = (
         *measured.warnings,
@@ -207,7 +208,7 @@ def analyse(
         posterior=samples,
         teams={stone: team for stone, team in team_of.items() if team},
         masses=masses or {},
-        sheet=measured.house is not None and sheet,
+        sheet=house is not None,
     )
     simulations = [
         simulation_table(table, model, team_of) for model, table in replay.samples.items()
@@ -218,7 +219,7 @@ def analyse(
         _camera_table(measured),
         results,
         pd.concat(simulations, ignore_index=True) if simulations else simulation_table(None, ""),
-        house=measured.house if sheet else None,
+        house=house,
         posterior=samples,
         ensemble=replay.ensemble,
         measurement=measured,

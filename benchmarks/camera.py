@@ -36,10 +36,10 @@ from curlshot.data.sheet import HOUSE, STONE
 from curlshot.synthetic import View
 from curlshot.synthetic.people import hidden
 from curlshot.vision.camera_path.follow_house import HouseFollower
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
+from curlshot.vision.video.reader import open_video
 
 Array = NDArray[np.float64]
 
@@ -112,7 +112,7 @@ def followed(path: Path) -> tuple[tuple[Camera, ...], float]:
 
     That of this thread alone: decoding goes on in others.
     """
-    clip = open_clip([path])
+    clip = open_video([path])
     follower, spent = HouseFollower(clip.size), 0.0
     for frame in clip:
         start = time.thread_time()
@@ -130,7 +130,7 @@ def measure(clip: Clip, height: int, repeat: int = 1) -> Score:
     films = enlarged(clip.camera, height / HEIGHT)
     score = Score(clip, len(truth.camera))
     start = time.process_time()
-    pictures = [frame.image for frame in open_clip([path]) if frame.index == 0]
+    pictures = [frame.image for frame in open_video([path]) if frame.index == 0]
     decoding = time.process_time() - start
     main = truth.camera["main"].to_numpy() == 1
     due = longest_shot(main)

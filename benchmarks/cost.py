@@ -35,7 +35,8 @@ from curlshot.report.encode import Encoder
 from curlshot.synthetic.camera import broadcast_camera
 from curlshot.synthetic.clip import cached_clip
 from curlshot.synthetic.scenes import random_scene, sweepers
-from curlshot.vision.film.clip import Image, open_clip
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import open_video
 
 FPS = 30.0
 
@@ -79,7 +80,7 @@ def long_clip(duration: float = 12.0) -> Path:
 
 def lengthened(clip: Path, frames: int, path: Path) -> None:
     """Write a clip of so many frames: another, then its last second backwards and forwards."""
-    source, count = open_clip([clip]), 0
+    source, count = open_video([clip]), 0
     last: deque[Image] = deque(maxlen=round(FPS))
     with Encoder(path, source.size, FPS) as film:
         for count, frame in enumerate(islice(source, frames), 1):

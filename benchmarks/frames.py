@@ -21,14 +21,13 @@ from numpy.typing import NDArray
 
 from curlshot.config import Config
 from curlshot.data.errors import CurlshotError
-from curlshot.data.progress import no_progress
 from curlshot.data.sheet import STONE
 from curlshot.vision.detection.glance import glance
 from curlshot.vision.detection.stones import SEARCH
-from curlshot.vision.film.clip import Image
-from curlshot.vision.measure import film
+from curlshot.vision.measure import track_camera
 from curlshot.vision.optics.camera import Camera
-from curlshot.vision.optics.placed import nobody
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import open_video
 
 Array = NDArray[np.float64]
 
@@ -60,7 +59,7 @@ def main() -> None:
     houses, tally = 0, Tally()
     for file in files:
         try:
-            camera = film([file], Config(), no_progress, nobody).cameras[0]
+            camera = track_camera(open_video([file]), Config()).cameras[0]
         except CurlshotError:
             continue
         houses += 1
@@ -87,8 +86,8 @@ def _look(file: Path, camera: Camera, boxes: Array, tally: Tally) -> None:
     size = np.array(camera.size)
     places = camera.ice(boxes[:, :2] * size - 0.5, STONE.cap_height)
     in_view = np.all(np.abs(boxes[:, :2] - 0.5) < 0.5 - 0.25 * boxes[:, 2:], axis=1)
-    on_sheet = np.abs(places[:, 0]) < SEARCH.x_max - 0.1
-    on_sheet &= np.abs(places[:, 1]) < SEARCH.y_max
+    on_sheet = np.abs(places[:, 0]) < SEARCH.half_width - 0.1
+    on_sheet &= np.abs(places[:, 1]) < SEARCH.half_length
     apart = np.hypot(*(seen[:, None] - places).transpose(2, 0, 1))
     counts = in_view & on_sheet
     missed = counts & ~(apart < NEAR).any(0)

@@ -27,7 +27,7 @@ from curlshot.synthetic import (
     tilted_camera,
 )
 from curlshot.synthetic.stones import HEIGHT
-from curlshot.vision.film.clip import Clip, open_clip
+from curlshot.vision.video.reader import Video, open_video
 
 SECONDS = 2.6
 RED, YELLOW, BLUE = (44, 26, 178), (38, 208, 226), (150, 70, 20)
@@ -174,7 +174,7 @@ def as_made(scene: Scene, rng: Rng) -> Scene:
     return replace(scene, paint=paint, stones=stones, light=light)
 
 
-def clip_of(kind: Kind, seed: int) -> tuple[Clip, Truth]:
+def clip_of(kind: Kind, seed: int) -> tuple[Video, Truth]:
     """One clip of a kind, rendered once per machine."""
     rng = np.random.default_rng([seed, *kind.name.encode()])
     scene, camera = kind.scene(rng), kind.camera(rng)
@@ -189,4 +189,4 @@ def clip_of(kind: Kind, seed: int) -> tuple[Clip, Truth]:
     )  # fmt: skip
     if kind.plain:  # flat discs: nothing shows how they turn
         truth = replace(truth, tracks=truth.tracks.assign(theta=np.nan, omega=np.nan))
-    return open_clip([path]), truth
+    return open_video([path]), truth

@@ -54,7 +54,8 @@ def main(clip: Path, folder: Path) -> None:
         )
     )
     frames = measured.frames
-    print(f"{clip.name}: {frames} frames of {measured.clip.size[0]} x {measured.clip.size[1]}")
+    width, height = measured.clip.whole_size
+    print(f"{clip.name}: {frames} frames of {width} x {height}")
     for name, seconds in (("tracking", tracking), ("overlay", overlay), ("report", page)):
         print(f"{name:<10s} {seconds:6.2f} s CPU   {1000 * seconds / frames:6.1f} ms a frame")
     print(f"overlay costs {overlay / tracking:.2f} of the tracking")

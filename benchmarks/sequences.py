@@ -21,12 +21,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from curlshot.config import VideoConfig
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.vision.detection.stones import plain_disc
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.stick import stick_cameras
 from curlshot.vision.track import track_stones
+from curlshot.vision.video.reader import open_video
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.float64]
@@ -175,7 +176,7 @@ def followed(sequence: Sequence, folder: Path) -> tuple[pd.DataFrame, pd.DataFra
     for index, picture in enumerate(pictures(sequence)):
         files.append(folder / f"{index:03d}.png")
         cv2.imwrite(str(files[-1]), picture, [cv2.IMWRITE_PNG_COMPRESSION, 1])
-    clip = open_clip(files, FPS)
+    clip = open_video(files, VideoConfig(fps=FPS))
     disc = plain_disc(RADIUS / SCALE)
     start = time.process_time()
     detections = track_stones(clip, stick_cameras(clip, STICK), disc=disc).detections

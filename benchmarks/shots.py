@@ -15,7 +15,7 @@ from pathlib import Path
 
 from curlshot import pipeline
 from curlshot.synthetic.scoring import read_truth, score_tracks
-from curlshot.vision.film.clip import open_clip
+from curlshot.vision.video.reader import open_video
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -38,7 +38,7 @@ def main() -> None:
 def row(clip: Path, out: Path) -> str:
     truth = read_truth(clip)
     start = time.process_time()
-    frames = sum(1 for _ in open_clip([clip]))
+    frames = sum(1 for _ in open_video([clip]))
     decoding = time.process_time() - start
     start, wall = time.process_time(), time.perf_counter()
     done = pipeline.run([clip], out)

@@ -23,11 +23,11 @@ from numpy.typing import NDArray
 
 from curlshot.data.sheet import HOUSE
 from curlshot.vision.camera_path.follow_house import follow_house
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.projection import apply_homography
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
+from curlshot.vision.video.reader import open_video
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -193,9 +193,9 @@ def score_clips(shared: Path) -> None:
         truth = json.loads(truth_path.read_text())
         film = truth_path.with_name(truth_path.name.replace(".truth.json", ".mp4"))
         start = time.process_time()
-        frames = sum(1 for _ in open_clip([film]))
+        frames = sum(1 for _ in open_video([film]))
         decoding = time.process_time() - start
-        track = follow_house(open_clip([film]))
+        track = follow_house(open_video([film]))
         spent = (time.process_time() - start - 2 * decoding) / frames
         house: list[float] = []
         guard: list[float] = []

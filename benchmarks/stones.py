@@ -26,9 +26,9 @@ from curlshot.synthetic.scenes import random_scene, sweepers
 from curlshot.synthetic.scoring import score_tracks
 from curlshot.vision.detection.glance import glance
 from curlshot.vision.detection.stones import SEARCH
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.track import track_stones
+from curlshot.vision.video.reader import open_video
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
@@ -111,7 +111,7 @@ def spin_error(found: pd.DataFrame, truth: pd.DataFrame, names: dict[str, str]) 
 def clips_table() -> pd.DataFrame:
     rows = []
     for name, path, cameras, truth in (*real_clips(), *rendered_clips()):
-        clip = open_clip([path])
+        clip = open_video([path])
         start = time.process_time()
         stones = track_stones(clip, cameras)
         spent = time.process_time() - start
@@ -140,7 +140,7 @@ def stills_table() -> pd.DataFrame:
     rows = []
     stills = json.loads((SHARED / "frames" / "stills.json").read_text())["frames"]
     for still in stills:
-        picture = open_clip([SHARED / "frames" / "images" / still["file"]])
+        picture = open_video([SHARED / "frames" / "images" / still["file"]])
         image = next(iter(picture)).image
         size = (still["size"][0], still["size"][1])
         place = np.array(still["camera"]["xyz"])
@@ -151,7 +151,7 @@ def stills_table() -> pd.DataFrame:
         boxes = stone_boxes(SHARED / "frames", Path(still["file"]).stem)
         marked = camera.ice(boxes[:, :2] * size - 0.5, STONE.cap_height)
         whole = np.all(np.abs(boxes[:, :2] - 0.5) < 0.5 - 0.1 * boxes[:, 2:], axis=1)
-        on_sheet = np.abs(marked[:, 0]) < SEARCH.x_max - 0.1
+        on_sheet = np.abs(marked[:, 0]) < SEARCH.half_width - 0.1
         marked = marked[on_sheet & whole]
         apart = np.hypot(*(found[:, None] - marked[None]).transpose(2, 0, 1))
         measured = np.array([(s["x"], s["y"]) for s in still["stones"]])

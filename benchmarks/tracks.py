@@ -24,9 +24,9 @@ from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.synthetic import Truth
 from curlshot.synthetic.scoring import score_tracks
 from curlshot.vision.camera_path.follow_house import follow_house
-from curlshot.vision.film.clip import Clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.track import track_stones
+from curlshot.vision.video.reader import Video
 
 SLOW, IDLE = 0.05, 0.05
 """Below these a stone does not count as moving (m/s) or turning (rad/s)."""
@@ -51,7 +51,7 @@ BARS = {
 }  # fmt: skip
 
 
-def tracks_of(clip: Clip, cameras: Sequence[Camera]) -> pd.DataFrame:
+def tracks_of(clip: Video, cameras: Sequence[Camera]) -> pd.DataFrame:
     """Give what ``tracks.csv`` of a clip holds."""
     detections = track_stones(clip, cameras).detections
     hits = find_contacts(detections, STONE.radius)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from curlshot.data.sheet import House
 
@@ -14,6 +14,13 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from curlshot.data.tracks import Table
+
+
+class Duplicate(NamedTuple):
+    """A decoded frame that repeats one before it: its time, s, and the number of that one."""
+
+    t: float
+    of: int
 
 
 @dataclass(frozen=True)
@@ -29,19 +36,19 @@ class Measurement:
     fps : float or None
         Nominal rate of frames, 1/s.
     frames : int
-        How many frames were read, repeats among them.
+        How many frames were decoded, duplicates among them.
     warnings : tuple of str
         What a person should know.
     clip : object or None
-        The clip that was read (see `curlshot.vision.film.clip.Clip`); None for tables.
+        The clip that was read (see `curlshot.vision.video.reader.Video`); None for tables.
     cameras : tuple
         One per frame (see `curlshot.vision.optics.camera.Camera`); empty for tables.
     house : House or None
         The rings; None where the scene has no house.
     masses : mapping of str to float
         Masses by stone as a table states them.
-    repeats : mapping of int to float
-        Time, s, of each frame that repeats the one before it and was not measured.
+    duplicates : mapping of int to Duplicate
+        Frames that repeat one before and were not measured.
     """
 
     files: tuple[Path, ...]
@@ -53,7 +60,7 @@ class Measurement:
     cameras: tuple[Any, ...] = ()
     house: House | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
-    repeats: Mapping[int, float] = field(default_factory=dict)
+    duplicates: Mapping[int, Duplicate] = field(default_factory=dict)
 
     @cached_property
     def detections(self) -> pd.DataFrame:

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import re
 
-OPTIONS = (
+OPTIONS = frozenset({
     "angle_unit", "angles", "camera", "camera_height", "clip", "config", "fps", "frames",
     "friction", "house", "length_unit", "masses", "names", "no_house", "overlay", "over", "radius",
     "restitution", "samples", "stick", "tab", "units",
-)  # fmt: skip
+})  # fmt: skip
 """Settings and arguments that are options of the command."""
 
 COMMANDS = ("check", "convert", "estimate", "run", "season", "simulate", "track")
 
 _OTHER = {"masses": "--mass", "overlay": "--no-overlay"}
-_NAME = re.compile(rf"`({'|'.join((*OPTIONS, *COMMANDS))})`")
+_NAME = re.compile(rf"`({'|'.join((*sorted(OPTIONS, key=len, reverse=True), *COMMANDS))})`")
 
 
 def as_options(text: str) -> str:

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from curlshot.data.measurement import Duplicate
 from curlshot.data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from curlshot.physics.filter.rate_filter import filtered, shared_response
 from curlshot.physics.filter.spin_loss import spin_loss
@@ -60,13 +61,13 @@ def smooth(
     radius: float,
     masses: Mapping[str, float] | None = None,
     run: Filter = filtered,
-    unseen: Mapping[int, float] = MappingProxyType({}),
+    duplicates: Mapping[int, Duplicate] = MappingProxyType({}),
 ) -> pd.DataFrame:
     """Turn detections into tracks, as a DataFrame: see `smoothed`."""
     import pandas as pd
 
     return pd.DataFrame(
-        smoothed(detections, contacts, radius=radius, masses=masses, run=run, unseen=unseen)
+        smoothed(detections, contacts, radius=radius, masses=masses, run=run, duplicates=duplicates)
     )
 
 
@@ -77,7 +78,7 @@ def smoothed(
     radius: float,
     masses: Mapping[str, float] | None = None,
     run: Filter = filtered,
-    unseen: Mapping[int, float] = MappingProxyType({}),
+    duplicates: Mapping[int, Duplicate] = MappingProxyType({}),
 ) -> Columns:
     """Turn detections into tracks: one row per stone and time from its first to its last.
 
@@ -97,14 +98,15 @@ def smoothed(
     run : Filter
         Filters one stone from hit to hit; `curlshot.physics.filter.reference_filter.filtered` does
         it with matrices.
-    unseen : mapping of int to float
-        Frames with their times, s, at which nothing was measured but states are wanted.
+    duplicates : mapping of int to Duplicate
+        Frames that repeat one before. Nothing was measured in them, and they have states at their
+        own times, also those that repeat the last frame in which a stone was seen.
 
     Returns
     -------
     Columns
         `curlshot.data.tracks.TRACK_COLUMNS`. ``seen`` is 0 in rows at which other stones were seen
-        but not this one, at frames `unseen`, or at which its detection was refused as an outlier.
+        but not this one, at `duplicates`, or at which its detection was refused as an outlier.
         Angles and spins are NaN where the stone's angle was not seen from one hit to the next,
         velocities where it was seen once. The standard deviations of places include what the
         detections share (``sd_place_x``, ``sd_place_y``).
@@ -114,12 +116,15 @@ def smoothed(
         return no_rows(TRACK_COLUMNS)
     t = np.asarray(detections["t"], float)
     rank = detections["frame"] if "frame" in detections else np.unique(t, return_inverse=True)[1]
-    times, first = np.unique(np.append(t, [*unseen.values()]), return_index=True)
-    frames = np.append(np.asarray(rank, int), np.array([*unseen], int))[first]
+    times, first = np.unique(np.append(t, [d.t for d in duplicates.values()]), return_index=True)
+    frames = np.append(np.asarray(rank, int), np.array([*duplicates], int))[first]
     fit, model, noise = _fit_pieces(known, contacts, radius)
-    stones = {}
+    stones, at_end = {}, {}
     for name, trace in known.items():
-        inside = (times >= trace.t[0]) & (times <= trace.t[-1])
+        last = frames[times == trace.t[-1]]
+        after = (times > trace.t[-1]) & np.isin(frames, _repeating(last, duplicates))
+        inside = (times >= trace.t[0]) & (times <= trace.t[-1]) | after
+        at_end[name] = int(after.sum())
         hits = sorted((c for c in contacts if name in c.stones), key=lambda c: c.t)
         when = times[inside], frames[inside]
         stones[name] = _cut_at_hits(trace, *when, hits, fit, model, noise[name], radius)
@@ -133,11 +138,22 @@ def smoothed(
     for name, stone in stones.items():
         for column, alike in zip(("sd_x", "sd_y"), stone.trace.sd_place[stone.row].T, strict=True):
             each[name][column] = np.hypot(each[name][column], alike)
-    widen_last(each, contacts, radius, masses)
+    widen_last(each, contacts, radius, masses, at_end)
     team, tables = teams(detections), list(each.values())
     tracks = {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
     tracks["team"] = np.array([team[stone] for stone in tracks["stone"].tolist()])
     return {name: tracks[name] for name in TRACK_COLUMNS}
+
+
+def _repeating(frames: NDArray[np.int64], duplicates: Mapping[int, Duplicate]) -> list[int]:
+    """Return the frames that show one of these again, as duplicates of it or of a duplicate."""
+    known = set(frames.tolist())
+    found = []
+    for frame, duplicate in sorted(duplicates.items()):
+        if duplicate.of in known:
+            known.add(frame)
+            found.append(frame)
+    return found
 
 
 def _fit_pieces(

@@ -26,7 +26,7 @@ from curlshot.report.style import (
     styled,
 )
 from curlshot.vision.detection.ice_map import rectify
-from curlshot.vision.film.clip import Image
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 Paint = tuple[Sequence[Array], Sequence[Array]]

@@ -14,8 +14,9 @@ from curlshot.data.progress import Progress, no_progress
 from curlshot.report.check import check_figure
 from curlshot.report.looks import Look, check_lines, check_table, frames_to_show
 from curlshot.vision.detection.glance import glance
-from curlshot.vision.measure import film
-from curlshot.vision.optics.placed import nobody
+from curlshot.vision.detection.stones import Search
+from curlshot.vision.measure import track_camera
+from curlshot.vision.video.reader import open_video
 
 
 def check(
@@ -49,23 +50,25 @@ def check(
     """
     config = config.replace(**settings)
     files = find_inputs(inputs)
-    seen = film(files, config, progress, nobody)
-    clip, cameras = seen.clip, seen.cameras
+    video = open_video(files, config.video)
+    seen = track_camera(video, config, progress)
+    cameras = seen.cameras
     radii = () if seen.house is None else seen.house.painted
     table = check_table(cameras, radii[0] if radii else 0.0)
     by_frame = {camera.frame: camera for camera in cameras}
     chosen = frozenset(frames_to_show(table))
     frames = []
-    for done, frame in enumerate(clip, 1):
+    for done, frame in enumerate(video, 1):
         if frame.index in chosen:
             frames.append(frame)
-        progress("frames to show", done, clip.expected)
-    stones = glance([(frame.image, by_frame[frame.index]) for frame in frames], seen.disc)
+        progress("frames to show", done, video.expected)
+    placed = [(frame.image, by_frame[frame.index]) for frame in frames]
+    stones = glance(placed, seen.disc, Search.of(config.search))
     looks = [
         Look(frame, by_frame[frame.index], found.stones, found.refused)
         for frame, found in zip(frames, stones, strict=True)
     ]
-    lines = check_lines(files[0].name, clip.read, table, looks, (*clip.warnings, *seen.warnings))
+    lines = check_lines(files[0].name, video.read, table, looks, (*video.warnings, *seen.warnings))
     title = f"{files[0].name}: {' '.join(lines[1].split())}"
     radius = config.stones.radius
     return check_figure(looks, table, radii, title=title, radius=radius), lines

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from curlshot.config import Config
-from curlshot.data.messages import option
+from curlshot.data.messages import OPTIONS, option
 
 MOST_FILES = 8
 """Input files that are named one by one."""
@@ -28,9 +28,12 @@ def command_of(files: Sequence[Path], config: Config) -> str:
         inputs = [f"{files[0].parent.name}/"]
     words = ["curlshot", "run", *inputs]
     usual = Config().values()
-    for name, value in config.values().items():
-        if value != usual[name]:
-            words += _option(name, value)
+    values = config.values()
+    changed = [name for name in values if values[name] != usual[name]]
+    for name in changed:
+        words += _option(name, values[name]) if name in OPTIONS else []
+    if not OPTIONS.issuperset(changed):
+        words += ["--config", "SETTINGS.toml"]  # what only a file can set
     return shlex.join(words)
 
 

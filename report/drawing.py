@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import SHEET
-from curlshot.vision.film.clip import Image
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.projection import apply_homography
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 Colour = tuple[int, int, int]

@@ -10,7 +10,8 @@ import av
 import cv2
 import numpy as np
 
-from curlshot.vision.film.clip import DEFAULT_IMAGE_FPS, Image
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.source import DEFAULT_IMAGE_FPS
 
 _TIME_BASE = Fraction(1, 90_000)  # fine enough for any rate, exact for 24, 25, 30, 50 and 60
 

@@ -11,8 +11,8 @@ import pandas as pd
 
 from curlshot.report.numbers import count, warned
 from curlshot.vision.detection.detection import Detection, Refusal
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import Camera, camera_table
+from curlshot.vision.video.frame import Frame
 
 COLUMNS, UPRIGHT_COLUMNS = 4, 6
 """Frames beside one another on the sheet; of clips that are higher than wide."""

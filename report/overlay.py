@@ -30,8 +30,10 @@ from curlshot.report.drawing import (
 from curlshot.report.encode import Encoder
 from curlshot.report.style import stone_colours, team_colour
 from curlshot.report.tables import play
-from curlshot.vision.film.clip import Clip, Frame, Image
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -94,7 +96,7 @@ class Scene:
 
 
 def write_overlay(
-    clip: Clip,
+    video: Video,
     cameras: Iterable[Camera],
     tracks: pd.DataFrame,
     collisions: Sequence[Collision],
@@ -111,7 +113,7 @@ def write_overlay(
 
     Parameters
     ----------
-    clip : Clip
+    video : Video
         Read once, from the start.
     cameras : iterable of Camera
         Found by their `frame`.
@@ -135,9 +137,9 @@ def write_overlay(
     """
     scene = _scene(tracks, collisions, rings, radius)
     by_frame = {camera.frame: camera for camera in cameras}
-    total = clip.expected
-    with whole_file(path) as part, Encoder(part, clip.size, clip.fps) as encoder:
-        for done, frame in enumerate(clip, 1):
+    total = video.expected
+    with whole_file(path) as part, Encoder(part, video.whole_size, video.fps) as encoder:
+        for done, frame in enumerate(video.uncut(), 1):
             camera = by_frame.get(frame.index)
             image = frame.image if camera is None else draw(frame, camera, scene)
             encoder.add(image, frame.t)

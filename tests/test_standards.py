@@ -15,7 +15,7 @@ MAY_IMPORT = {
     "data": set(),
     "config": {"data"},
     "physics": {"data", "config"},
-    "vision": {"data", "config", "physics"},
+    "vision": {"data", "config"},
     "synthetic": set(),
     "report": {"data", "config", "physics", "vision", "outcome"},
     "outcome": {"data", "config", "physics", "report"},
@@ -25,7 +25,7 @@ MAY_IMPORT = {
 }
 """The rooms that each room may import. `outcome` and `report` are one floor: a run draws itself."""
 ORDER = {
-    "vision": "film optics sheet camera_path spin detection association track measure",
+    "vision": "video optics sheet camera_path spin detection association track measure",
     "physics": "registry impact ice curl filter statistics local_fit kalman simulator whole_shot"
     " estimate posterior prediction steps cautions",
 }

@@ -8,115 +8,113 @@ from typing import TYPE_CHECKING
 
 from curlshot.config import Config, refuse_table_settings
 from curlshot.data.errors import InputError
-from curlshot.data.inputs import (
-    IMAGE_SUFFIXES,
-    PROJECT_SUFFIXES,
-    SPREADSHEET,
-    SPREADSHEETS,
-    TABLE_SUFFIXES,
-)
+from curlshot.data.inputs import IMAGE_SUFFIXES, PROJECT_SUFFIXES
 from curlshot.data.measurement import Measurement
 from curlshot.data.progress import Progress, no_progress
 from curlshot.data.sheet import HOUSE, STONE, House, Stone, curling_size
 
 if TYPE_CHECKING:
     from curlshot.vision.camera_path.joint import HouseTrack
-    from curlshot.vision.film.clip import Clip, Frame
     from curlshot.vision.optics.camera import Camera
     from curlshot.vision.optics.placed import Placed
+    from curlshot.vision.video.frame import Frame
+    from curlshot.vision.video.reader import Video
 
 STONE_RADII = (0.12, 0.18)
 """m; below it a cap leaves hardly any granite to see, above it are diameters."""
 
 
 @dataclass(frozen=True)
-class Filmed:
-    """A clip with its cameras, without black bars, and what is known of the scene."""
+class CameraTrack:
+    """The cameras of a clip, one per frame that is yielded, and what is known of the scene."""
 
-    clip: Clip
     cameras: tuple[Camera, ...]
     disc: Stone
     house: House | None = None
     warnings: tuple[str, ...] = ()
 
 
-def film(files: tuple[Path, ...], config: Config, progress: Progress, placed: Placed) -> Filmed:
-    """Open a clip, read it and find its cameras; `placed` is told of each frame on the way."""
-    clip, disc = _open_clip(files, config), disc_of(config)
-    refuse_table_settings(files[0], config)
+def track_camera(
+    video: Video,
+    config: Config,
+    progress: Progress = no_progress,
+    placed: Placed = lambda frame, camera: None,
+) -> CameraTrack:
+    """Find the camera of each frame of a clip, in one pass over it.
+
+    Parameters
+    ----------
+    video : Video
+        Where the house is found by itself, its black bars are cut off from now on.
+    config : Config
+        What is known of the clip.
+    progress : callable
+        Called as the work goes on.
+    placed : callable
+        Called with each frame and its camera, which may be provisional.
+
+    Returns
+    -------
+    CameraTrack
+        With the true times, in pixels of the frames that `video` yields.
+
+    Raises
+    ------
+    InputError
+        Where the settings do not fit the clip.
+    SceneError
+        Where no house is found.
+    """
+    disc, file = disc_of(config), video.files[0]
+    refuse_table_settings(file, config)
+    house: House | None = None
+    warnings: tuple[str, ...] = ()
     if config.camera.stick is not None:
         from curlshot.vision.optics.stick import stick_cameras
 
-        cameras = stick_cameras(clip, config.camera.stick, progress, placed)
-        filmed = Filmed(clip, cameras, disc)
+        cameras = stick_cameras(video, config.camera.stick, progress, placed)
     elif config.camera.camera is not None:
-        cameras, notes = _given_cameras(clip, config.camera.camera, config, progress, placed)
+        cameras, warnings = _given_cameras(video, config.camera.camera, config, progress, placed)
         house = HOUSE if curling_size(config.stones.radius) else None
-        filmed = Filmed(clip, cameras, disc, house, notes)
     else:
         if config.camera.house is None:
-            from curlshot.vision.optics.letterbox import lit_clip
-
-            clip = lit_clip(clip, progress)
-        followed = _follow(clip, config, progress, placed)
+            video.cut_bars(progress)
+        followed = _follow(video, config, progress, placed)
         house = House(*(float(radius) for radius in followed.radii))
-        filmed = Filmed(clip, followed.cameras, disc, house, followed.warnings)
-    if clip.cadence is not None:
-        from curlshot.vision.optics.camera import taken_at
-
-        filmed = replace(filmed, cameras=taken_at(filmed.cameras, clip.cadence.times))
-    if not filmed.cameras:
-        raise InputError(f"{files[0]}: none of the frames that are used can be read")
-    check_size(config.stones.radius, filmed.cameras[0])
-    return filmed
-
-
-def _open_clip(files: tuple[Path, ...], config: Config) -> Clip:
-    """Open a video, pictures, or the clip of a Tracker project."""
-    from curlshot.vision.film.clip import open_clip
-
-    kinds = [path.suffix.lower() for path in files]
-    if SPREADSHEETS.intersection(kinds):
-        raise InputError(f"{files[0]}: {SPREADSHEET}")
-    if not TABLE_SUFFIXES.intersection(kinds):
-        return open_clip(files, config.video.fps, config.video.frames)
-    if len(files) > 1 or kinds[0] not in PROJECT_SUFFIXES:
-        odd = files[0] if kinds[0] not in PROJECT_SUFFIXES else files[1]
-        raise InputError(f"{odd}: not a clip; name a video, pictures, or one Tracker project")
-    from curlshot.vision.optics.project_clip import open_project_clip
-
-    clip = open_project_clip(files[0], config.video.tab, config.video.frames)
-    if config.video.fps is not None:
-        clip.warnings.append(f"{files[0]}: a project says how long frames last; `fps` is ignored")
-    return clip
+        cameras, warnings = followed.cameras, followed.warnings
+    cameras = video.retime(cameras)
+    if not cameras:
+        raise InputError(f"{file}: none of the frames that are used can be read")
+    check_size(config.stones.radius, cameras[0])
+    return CameraTrack(cameras, disc, house, warnings)
 
 
 def _given_cameras(
-    clip: Clip, path: Path, config: Config, progress: Progress, placed: Placed
+    video: Video, path: Path, config: Config, progress: Progress, placed: Placed
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Read the cameras of a table, or of a Tracker project."""
     if path.suffix.lower() not in PROJECT_SUFFIXES:
         from curlshot.vision.optics.camera_file import given_cameras
 
-        return given_cameras(clip, path, progress, placed)
+        return given_cameras(video, path, progress, placed)
     from curlshot.data.project import read_project
     from curlshot.vision.optics.project_clip import project_cameras
 
     project = read_project(path, config.video.tab)
-    return project_cameras(clip, project, config.tables.length_unit, progress, placed)
+    return project_cameras(video, project, config.tables.length_unit, progress, placed)
 
 
-def _follow(clip: Clip, config: Config, progress: Progress, placed: Placed) -> HouseTrack:
+def _follow(video: Video, config: Config, progress: Progress, placed: Placed) -> HouseTrack:
     """Follow the house, from where a person says that it is or from where it is found."""
     if config.camera.house is None:
         from curlshot.vision.camera_path.follow_house import follow_house
 
-        return follow_house(clip, progress, placed=placed, height=config.camera.camera_height)
+        return follow_house(video, progress, placed=placed, height=config.camera.camera_height)
     from curlshot.vision.camera_path.given import GivenHouse, follow_given
 
     frame, *points = config.camera.house
     given = GivenHouse.of(points, frame)
-    return follow_given(clip, given, progress, placed, config.camera.camera_height)
+    return follow_given(video, given, progress, placed, config.camera.camera_height)
 
 
 def check_size(radius: float, camera: Camera) -> None:
@@ -178,32 +176,31 @@ def measure_clip(
         Where the clip cannot be used; one line says why.
     """
     from curlshot.vision.association.watch import Watch
-    from curlshot.vision.detection.stones import FOLLOWING, SEARCH
-    from curlshot.vision.optics.camera import carried
-    from curlshot.vision.optics.letterbox import in_whole
+    from curlshot.vision.detection.stones import Search
     from curlshot.vision.track import tracks_of
+    from curlshot.vision.video.reader import open_video
 
+    disc, video = disc_of(config), open_video(files, config.video)
     alone = len(files) == 1 and files[0].suffix.lower() in IMAGE_SUFFIXES
     # A picture by itself has one chance.
-    watch = Watch(disc_of(config), SEARCH if alone else FOLLOWING)
+    fine, rough = (Search.of(config.search, clip=clip) for clip in (False, True))
+    watch = Watch(disc, fine if alone else rough, fine)
 
     def look(frame: Frame, camera: Camera) -> None:
         if not watch.begun:
             check_size(config.stones.radius, camera)
         watch.look(frame, camera)
 
-    seen = film(files, config, progress, look)
+    seen = track_camera(video, config, progress, look)
     stones = tracks_of(watch, seen.cameras)
-    clip, cameras = in_whole(seen.clip, seen.cameras)
-    repeated = clip.repeated
     return Measurement(
         files,
         stones.table,
-        clip.fps,
-        clip.passed,
-        (*clip.warnings, *seen.warnings, *stones.warnings),
-        clip,
-        carried(cameras, repeated),
+        video.fps,
+        video.decoded,
+        (*video.warnings, *seen.warnings, *stones.warnings),
+        video,
+        video.finish(seen.cameras),
         seen.house,
-        repeats={frame: t for frame, (t, _) in repeated.items()},
+        duplicates=video.duplicates,
     )

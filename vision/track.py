@@ -26,12 +26,12 @@ from curlshot.vision.detection.patch import HANDLE_HEIGHT_SD, handle_radii, is_p
 from curlshot.vision.detection.roundness import edge_errors
 from curlshot.vision.detection.smeared import widened
 from curlshot.vision.detection.steady import Lightness, common_share, lightness_of, steadied
-from curlshot.vision.film.clip import Clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.cameras import Cameras
 from curlshot.vision.spin.angles import angles_in_parts
 from curlshot.vision.spin.common_height import common_height, turned_widely
 from curlshot.vision.spin.handle import HandleAngles
+from curlshot.vision.video.reader import Video
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,12 +80,12 @@ class StoneTracks:
         return pd.DataFrame(self.table)
 
 
-def track_stones(clip: Clip, cameras: Sequence[Camera], *, disc: Stone = STONE) -> StoneTracks:
+def track_stones(video: Video, cameras: Sequence[Camera], *, disc: Stone = STONE) -> StoneTracks:
     """Find, follow and name the stones of a clip and measure how they are turned.
 
     Parameters
     ----------
-    clip : Clip
+    video : Video
         Read once.
     cameras : sequence of Camera
         One per frame; frames without one are left out.
@@ -99,7 +99,7 @@ def track_stones(clip: Clip, cameras: Sequence[Camera], *, disc: Stone = STONE) 
     """
     by_frame = {camera.frame: camera for camera in cameras}
     watch = Watch(disc)
-    for frame in clip:
+    for frame in video:
         if frame.index in by_frame:
             watch.look(frame, by_frame[frame.index])
     return tracks_of(watch, cameras)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 from math import erf, sqrt
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,7 @@ def widen_last(
     hits: Sequence[Contact],
     radius: float,
     masses: Mapping[str, float] | None = None,
+    duplicates: Mapping[str, int] = MappingProxyType({}),
 ) -> None:
     """Widen the errors in the last pictures of stones that may have hit each other in them.
 
@@ -49,13 +51,16 @@ def widen_last(
         Of the discs, m.
     masses : mapping, optional
         Stone to mass in any unit; 1 where absent.
+    duplicates : mapping of str to int
+        How many of its last rows are of frames that repeat the last in which it was seen.
     """
     masses = masses or {}
     for first, second in combinations(tracks, 2):
         pair = tracks[first], tracks[second]
-        if min(len(rows["t"]) for rows in pair) <= LAST or pair[0]["t"][-1] != pair[1]["t"][-1]:
+        last = LAST + duplicates.get(first, 0)
+        if min(len(rows["t"]) for rows in pair) <= last or pair[0]["t"][-1] != pair[1]["t"][-1]:
             continue
-        t = pair[0]["t"][-1 - LAST :]
+        t = pair[0]["t"][-1 - last :]
         if not any(hit.t > t[0] and {*hit.stones} & {first, second} for hit in hits):
             _widen(pair, t, radius, (masses.get(first, 1.0), masses.get(second, 1.0)))
 
@@ -63,9 +68,10 @@ def widen_last(
 def _widen(
     pair: tuple[Columns, Columns], t: Floats, radius: float, mass: tuple[float, float]
 ) -> None:
-    """Widen the errors of two stones at the last times t, s, as from before them they go on."""
+    """Widen the errors of two stones at the last times t, s: from the first of them they go on."""
+    last = len(t) - 1
     state, sd = (
-        [np.array([rows[name][-1 - LAST] for name in names]) for rows in pair]
+        [np.array([rows[name][-1 - last] for name in names]) for rows in pair]
         for names in (("x", "y", "vx", "vy"), ("sd_x", "sd_y"))
     )
     apart, drift = np.split(state[1] - state[0], 2)
@@ -78,11 +84,11 @@ def _widen(
     closing = -float(drift @ normal)
     sd_wait = float(np.hypot(*(np.hypot(*sd) * normal))) / closing
     changes = [CHANGE * closing * other / sum(mass) for other in mass[::-1]]
-    for k in range(1, LAST + 1):
+    for k in range(1, last + 1):
         since = float(t[k] - t[0]) - wait
         after = sqrt(0.5 + 0.5 * erf(since / (sqrt(2) * sd_wait)))
         for rows, most in zip(pair, changes, strict=True):
-            at = k - LAST - 1
+            at = k - last - 1
             for axis, change in zip("xy", (after * most * np.abs(normal)).tolist(), strict=True):
                 way = change * max(since, sd_wait)
                 rows[f"sd_{axis}"][at] = np.hypot(rows[f"sd_{axis}"][at], way)

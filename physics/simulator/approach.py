@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:  # whoever follows stones in pictures needs no laws of ice
+from curlshot.data.geometry import origin_to_segment
+
+if TYPE_CHECKING:
     from curlshot.physics.simulator.motion import Path, Point
 
 Array = NDArray[np.float64]
@@ -65,7 +67,7 @@ def first_contact(
             continue
         slack = _slack(a0, a1, b0, b1, step)
         x0, y0, x1, y1 = b0.x - a0.x, b0.y - a0.y, b1.x - a1.x, b1.y - a1.y
-        if nearest(x0, y0, x1, y1) - slack > reach:
+        if origin_to_segment(x0, y0, x1, y1) - slack > reach:
             t0, a0, b0 = later.pop()
             continue
         if slack < 1e-3 * reach and math.hypot(x1, y1) <= reach:
@@ -102,14 +104,6 @@ def _slack(a0: Point, a1: Point, b0: Point, b1: Point, step: float) -> float:
 def _spread(p0: Point, p1: Point) -> float:
     """Bound on the diameter of the set of velocities between two points of a path."""
     return p0.speed - p1.speed + p0.speed * abs(p1.heading - p0.heading)
-
-
-def nearest(x0: float, y0: float, x1: float, y1: float) -> float:
-    """Distance of the origin from the segment between two offsets, m."""
-    dx, dy = x1 - x0, y1 - y0
-    square = dx * dx + dy * dy
-    s = min(max(-(x0 * dx + y0 * dy) / square, 0.0), 1.0) if square else 0.0
-    return math.hypot(x0 + s * dx, y0 + s * dy)
 
 
 def _part(a0: Point, a1: Point, b0: Point, b1: Point) -> bool:
@@ -175,7 +169,10 @@ def _crossing(a: Path, b: Path, low: float, high: float, reach: float) -> float:
 
 
 def all_nearest(start: Array, end: Array) -> Array:
-    """Distances of the origin from segments between offsets, shape (n,); see `nearest`."""
+    """Return distances of the origin from segments between offsets, shape (n,).
+
+    The same for one segment is `curlshot.data.geometry.origin_to_segment`.
+    """
     x, y = start[:, 0], start[:, 1]
     dx, dy = end[:, 0] - x, end[:, 1] - y
     square = dx * dx + dy * dy

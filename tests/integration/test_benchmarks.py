@@ -67,7 +67,7 @@ def test_clips_of_kinds_are_drawn_as_made_and_flat_discs_show_no_spin(
         return Path("clip.mp4"), true
 
     monkeypatch.setattr(kinds, "cached_clip", clip)
-    monkeypatch.setattr(kinds, "open_clip", lambda paths: paths)
+    monkeypatch.setattr(kinds, "open_video", lambda paths: paths)
     told = {kind: kinds.clip_of(kind, 1)[1].tracks["omega"].notna().all() for kind in kinds.KINDS}
     assert all(spin != kind.plain for kind, spin in told.items())
     assert all(stone.wall > 0 for scene in drawn for stone in scene.stones)

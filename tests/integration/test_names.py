@@ -15,7 +15,7 @@ from curlshot.report.looks import Look
 from curlshot.report.style import plain_text
 from curlshot.tests.helpers.report import looking
 from curlshot.tests.helpers.report.looking import SIZE, camera
-from curlshot.vision.film.clip import Frame
+from curlshot.vision.video.frame import Frame
 
 
 @pytest.fixture

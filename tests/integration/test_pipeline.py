@@ -25,7 +25,7 @@ from curlshot.outcome import Run
 from curlshot.report.summary import summary
 from curlshot.synthetic.scoring import read_truth, score_tracks
 from curlshot.synthetic.video import write_video
-from curlshot.vision.film.clip import open_clip
+from curlshot.vision.video.reader import open_video
 
 SAMPLE = pipeline.sample_clip()
 CONTRACT = {
@@ -91,7 +91,7 @@ def test_sample_is_measured_to_the_bars(sample: Run) -> None:
 def test_a_clip_told_at_another_rate_tells_what_it_tells_at_its_own(
     sample: Run, tmp_path: Path
 ) -> None:
-    pictures = [frame.image for frame in islice(open_clip([SAMPLE]).every(), 76)]
+    pictures = [frame.image for frame in islice(open_video([SAMPLE]), 76)]
     # 25 a second told as 30: five pictures in six frames.
     thirty = [(k / 30, pictures[5 * k // 6]) for k in range(90)]
     write_video(tmp_path / "thirty.mp4", thirty, fps=30.0)

@@ -5,8 +5,13 @@ from typing import Any
 
 import pytest
 
+from curlshot import pipeline
+from curlshot.cli.arguments import config_of
+from curlshot.cli.main import main
+from curlshot.cli.parser import command_line
 from curlshot.config import Config, refuse_table_settings
 from curlshot.data.errors import InputError
+from curlshot.data.messages import OPTIONS
 
 
 def test_a_tab_is_refused_where_nothing_has_tabs() -> None:
@@ -70,3 +75,56 @@ def test_paths_may_be_strings() -> None:
         Path("camera.csv"),
         {"A": Path("a.txt")},
     )
+
+
+def test_every_setting_stands_in_the_file_with_its_meaning_and_is_read_back() -> None:
+    config = Config().replace(
+        masses={"A b": 19.0}, names={"A": "mass A"}, frames=(3, None), min_evidence=1.2,
+        house=(None, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0), overlay=False, units="ft",
+    )  # fmt: skip
+    text = config.to_toml()
+    assert Config.from_text(text) == config
+    for _, item in Config.settings():
+        assert f"{item.name} =" in text
+        assert item.metadata["meaning"] in text
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("[vidoe]\nfps = 1.0", r"club.toml: no section \[vidoe\]; did you mean 'video'\?"),
+        ("[video]\nfsp = 1.0", r"no key 'fsp' in \[video\]; did you mean 'fps'\?"),
+        ("[video]\nfps = -1.0", "fps: -1.0 is not a positive number"),
+        ("[video]\nfps = 'x'", "fps: 'x' is not a positive number"),
+        ("video = 3", "video is a section"),
+        ("[video", "club.toml: "),
+        ("[camera]\nstick = [1, 2, 3]", "5 values, please"),
+    ],
+)
+def test_a_file_with_a_mistake_is_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, reason: str
+) -> None:
+    path = tmp_path / "club.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=reason):
+        Config.from_file(path)
+    assert main(["config", "--config", str(path)]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_paths_in_a_file_are_relative_to_it_and_the_command_line_wins(tmp_path: Path) -> None:
+    path = tmp_path / "club.toml"
+    path.write_text("[camera]\ncamera = 'camera.csv'\n[stones]\nradius = 0.14\n", "utf-8")
+    assert Config.from_file(path).camera.camera == tmp_path / "camera.csv"
+    parsed = command_line("1").parse_args(["run", "--config", str(path), "--radius", "0.145"])
+    assert config_of(parsed).stones.radius == 0.145
+
+
+def test_an_unknown_setting_in_python_names_the_nearest() -> None:
+    with pytest.raises(TypeError, match="no setting 'raduis'; did you mean 'radius'"):
+        pipeline.run([], raduis=0.1)
+
+
+def test_options_that_messages_name_are_settings_or_arguments_of_a_command() -> None:
+    arguments = {"config", "over"}
+    assert arguments | {item.name for _, item in Config.settings()} >= OPTIONS

@@ -139,7 +139,7 @@ def _found(
 ) -> list[Detection | None]:
     """Give the detections where places show stones and are the right ones, else None."""
     out: list[Detection | None] = [None] * len(right)
-    faults = judge(seen, disc, replace(search, least_evidence=search.least_again))
+    faults = judge(seen, disc, replace(search, min_evidence=search.min_repeated_evidence))
     chosen = np.array([i for i, fault in enumerate(faults) if right[i] and not fault], np.intp)
     found = detections(seen, looks, chosen, disc)
     for i, detection in zip(chosen.tolist(), found, strict=True):

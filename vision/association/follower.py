@@ -25,10 +25,10 @@ from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.seek import Bounds
 from curlshot.vision.detection.stones import NEAREST, Search, search_picture
-from curlshot.vision.film.clip import Frame
-from curlshot.vision.film.shelf import Shelf
 from curlshot.vision.optics import projection
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.disk_cache import DiskCache
+from curlshot.vision.video.frame import Frame
 
 Array = NDArray[np.float64]
 
@@ -76,11 +76,11 @@ class StoneView:
         """Of the stones, m, shape (n, 2)."""
         return _places(self.detections)
 
-    def put_aside(self, shelf: Shelf) -> None:
+    def put_aside(self, cache: DiskCache) -> None:
         """Put aside how the caps of its stones look."""
         for detection in self.detections:
             if detection.spectrum is not None:
-                detection.spectrum.put_aside(shelf)
+                detection.spectrum.put_aside(cache)
 
     def look(self, places: Sequence[Place], drift: Sequence[Place] | None = None) -> Look:
         """Look at places on the ice in it; what is there drifts so far from picture to picture."""

@@ -9,13 +9,13 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.physics.simulator.approach import nearest
+from curlshot.data.geometry import origin_to_segment
 from curlshot.vision.association.still import Portrait
 from curlshot.vision.detection.detection import Detection
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.align import Complex
 from curlshot.vision.spin.facing import angle_between
 from curlshot.vision.spin.handle import TURNING
+from curlshot.vision.video.disk_cache import Cached
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ class Lead:
         Whether it was missed since.
     anchor : tuple of float
         The place that it has not left lately, m.
-    facing : Kept of ndarray, optional
+    facing : Cached of ndarray, optional
         How its cap looked when it came there (`curlshot.vision.spin.handle.cap_spectrum`).
     steady : int
         For how many clear detections it has neither left nor turned.
@@ -90,7 +90,7 @@ class Lead:
     anchor: tuple[float, float]
     score: float
     missed: bool = False
-    facing: Kept[Complex] | None = None
+    facing: Cached[Complex] | None = None
     steady: int = 0
     portrait: Portrait | None = None
     along: int = 1
@@ -128,7 +128,8 @@ class Lead:
     def nears(self, place: tuple[float, float], t: float, within: float) -> bool:
         """Whether the stone is expected to come so near to a place, m, `AHEAD` from then, s."""
         (x, y), (end_x, end_y) = self.at(t), self.at(t + AHEAD)
-        return nearest(x - place[0], y - place[1], end_x - place[0], end_y - place[1]) < within
+        start, end = (x - place[0], y - place[1]), (end_x - place[0], end_y - place[1])
+        return origin_to_segment(*start, *end) < within
 
     def _slowed(self, t: float) -> tuple[float, float]:
         """Tell what share of its velocity is left by then, and how long it moves till then, s."""

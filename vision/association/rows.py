@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.vision.detection.detection import Detection
-from curlshot.vision.film.shelf import Kept
+from curlshot.vision.video.disk_cache import Cached
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Rows(Sequence[Detection]):
 
     def __init__(self, detections: Iterable[Detection] = ()) -> None:
         self._numbers = array("d")
-        self._spectra: list[Kept[NDArray[np.complex64]] | None] = []
+        self._spectra: list[Cached[NDArray[np.complex64]] | None] = []
         for detection in detections:
             self.append(detection)
 
@@ -61,7 +61,7 @@ class Rows(Sequence[Detection]):
         self._spectra.extend(other._spectra)
 
     @property
-    def spectra(self) -> Sequence[Kept[NDArray[np.complex64]] | None]:
+    def spectra(self) -> Sequence[Cached[NDArray[np.complex64]] | None]:
         """Of the detections, without making these anew."""
         return self._spectra
 
@@ -93,7 +93,7 @@ class Rows(Sequence[Detection]):
         return rows[:, [SINGLE.index(name) for name in names]].T
 
 
-def _unpacked(row: list[float], spectrum: Kept[NDArray[np.complex64]] | None) -> Detection:
+def _unpacked(row: list[float], spectrum: Cached[NDArray[np.complex64]] | None) -> Detection:
     (
         x, y, sd_x, sd_y, visible, score, pixel_size, measured, swept, shared_x, shared_y,
         lightness, a, b, *bends, u, v, light_x, light_y,

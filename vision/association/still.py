@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from curlshot.data.sheet import Stone
 from curlshot.vision.detection.detection import Detection
-from curlshot.vision.film.picture import Picture, lightness_at
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.cameras import Cameras
+from curlshot.vision.video.picture import Picture, lightness_at
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

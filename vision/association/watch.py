@@ -34,10 +34,10 @@ from curlshot.vision.detection.placing import placed_by
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.stones import FOLLOWING, SEARCH, Search
 from curlshot.vision.detection.strangers import strangers
-from curlshot.vision.film.clip import Frame, Image
-from curlshot.vision.film.picture import brightened, toned
-from curlshot.vision.film.shelf import Kept, Shelf
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.disk_cache import Cached, DiskCache
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image, brightened, toned
 
 AT_ONCE = 64
 """Pictures whose stones are placed together in the end: more take memory, and no less time each."""
@@ -82,13 +82,15 @@ class Watch:
         Where stones are sought and what they must show.
     """
 
-    def __init__(self, disc: Stone = STONE, search: Search = FOLLOWING):
+    def __init__(
+        self, disc: Stone = STONE, search: Search = FOLLOWING, finer: Search = SEARCH
+    ) -> None:
         self.appearance: Appearance | None = None
-        self.disc, self._search = disc, search
+        self.disc, self._search, self._finer = disc, search, finer
         self._lessons: list[Detection] = []
         self._waiting: list[StoneView] = []
         self._recent: deque[StoneView] = deque()
-        self._shelf = Shelf(ROOM)
+        self._cache = DiskCache(ROOM)
         self._balance: Balance | None = None
         self._gain = np.ones(3)
         self._tones: Image | None = None
@@ -96,7 +98,7 @@ class Watch:
         self._leads: list[Lead] = []
         self._since = self._most = MEMORY
         self._searched_first = False
-        self._seen: dict[int, Kept[Sequence[Detection]]] = {}
+        self._seen: dict[int, Cached[Sequence[Detection]]] = {}
 
     def look(self, frame: Frame, camera: Camera) -> None:
         """Take in a frame; it waits for some more, the first ones until the stones are learned."""
@@ -115,7 +117,7 @@ class Watch:
         # The next search goes back no farther: no more pictures than that are held at all.
         while self._recent and len(self._recent) + len(self._waiting) > self._most:
             self._put_aside(self._recent.popleft())
-        self._seen[frame.index] = Kept(view.detections)
+        self._seen[frame.index] = Cached(view.detections)
         if len(self._waiting) >= (BLOCK if self._knows else self._most):
             self._catch_up()
 
@@ -206,16 +208,19 @@ class Watch:
             self._waiting, self._lessons = as_they_are
 
     def _of_any_colour(
-        self, views: Iterable[StoneView], radius_px: float = SEARCH.radius_px
+        self, views: Iterable[StoneView], radius_px: float | None = None
     ) -> list[Detection]:
         """Stones of any colour that were not seen in the views so far.
 
         A dull cap on vivid paint answers too faintly on a map much coarser than that of `SEARCH`.
         """
         # Too much on the ice answers faintly to any colour.
-        search = replace(self._search, least_score=SEARCH.least_score, radius_px=radius_px)
+        fine = self._finer.radius_px
+        radius_px = fine if radius_px is None else radius_px
+        response = self._finer.min_response
+        search = replace(self._search, min_response=response, radius_px=radius_px)
         looks = [Look(view.frame.picture, view.camera, view.places) for view in views]
-        rough = radius_px < SEARCH.radius_px
+        rough = radius_px < fine
         found, disc = strangers(looks, self.disc, search, bool(self._lessons), rough)
         stones = [stone for one in found for stone in one.stones]
         if convincing(stones):
@@ -233,9 +238,9 @@ class Watch:
 
     def _put_aside(self, view: StoneView) -> None:
         """Keep of a view that is done what takes little memory."""
-        view.put_aside(self._shelf)
-        rows: Kept[Sequence[Detection]] = Kept(Rows(view.detections))
-        rows.put_aside(self._shelf)
+        view.put_aside(self._cache)
+        rows: Cached[Sequence[Detection]] = Cached(Rows(view.detections))
+        rows.put_aside(self._cache)
         self._seen[view.frame.index] = rows
 
     def _misses(self, view: StoneView) -> bool:
@@ -273,7 +278,7 @@ class Watch:
         So are plain discs, of which nothing but a rim answers.
         """
         finer = not self._leads or is_plain(self.disc)
-        radius_px = SEARCH.radius_px if finer else self._search.radius_px
+        radius_px = (self._finer if finer else self._search).radius_px
         search = replace(self._search, radius_px=radius_px)
         fresh = replace(self._follower, search=search).sought(view)
         view.detections.extend(fresh)

@@ -17,9 +17,6 @@ from curlshot.data.sheet import HOUSE
 from curlshot.vision.camera_path.joint import Seen
 from curlshot.vision.camera_path.shutter import ShutterLight, Smeared
 from curlshot.vision.camera_path.smear import Shutter, reach_beyond, smear
-from curlshot.vision.film.clip import Frame
-from curlshot.vision.film.picture import Picture
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.linear import Observations
 from curlshot.vision.optics.paint import CIRCLES, EIGHT, FIXED, TWELVE, Marks, joined
 from curlshot.vision.optics.pose import View
@@ -31,6 +28,9 @@ from curlshot.vision.sheet.mixing import lit
 from curlshot.vision.sheet.normals import OUTSIDE, Normals, lay_out
 from curlshot.vision.sheet.outline import PaintEdge, find_edge
 from curlshot.vision.sheet.stations import THIN
+from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Picture
 
 Array = NDArray[np.float64]
 
@@ -197,7 +197,7 @@ class EdgeTracker:
         """Give a frame with its marks, which were measured with a share of light."""
         by_light = self._pan.by_light(marks)
         return Seen(
-            frame.index, frame.t, fit.view, Kept(marks), True,
+            frame.index, frame.t, fit.view, Cached(marks), True,
             smeared=self.blur, share=share, by_light=by_light if by_light.any() else None,
         )  # fmt: skip
 
@@ -241,7 +241,7 @@ class EdgeTracker:
             return seen
         marks = seen.marks.get()
         pixel = marks.pixel + marks.normal * (more * seen.by_light)[:, None]
-        return replace(seen, marks=Kept(replace(marks, pixel=pixel)), share=self.light.share)
+        return replace(seen, marks=Cached(replace(marks, pixel=pixel)), share=self.light.share)
 
     @property
     def blur(self) -> float:

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.vision.camera_path.keyframe import small_of
-from curlshot.vision.film.picture import Picture
 from curlshot.vision.optics.pose import DOWN, View, rotation_vector
+from curlshot.vision.video.picture import Picture
 
 Array = NDArray[np.float64]
 

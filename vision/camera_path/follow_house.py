@@ -22,15 +22,16 @@ from curlshot.vision.camera_path.edge_tracker import EdgeTracker
 from curlshot.vision.camera_path.joint import HouseTrack, Seen, fit_clip
 from curlshot.vision.camera_path.piece import MOST_MISSED, Piece
 from curlshot.vision.camera_path.replay import Glimpse, glimpse, has_jumped, is_nearer, is_replay
-from curlshot.vision.film.clip import Clip, Frame
-from curlshot.vision.film.picture import image_of
-from curlshot.vision.film.shelf import Shelf
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.paint import TWELVE
 from curlshot.vision.optics.placed import Placed, nobody
 from curlshot.vision.optics.pose import View
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit, at_height
+from curlshot.vision.video.disk_cache import DiskCache
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import image_of
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -82,7 +83,7 @@ class HouseFollower:
         self._size, self._height = size, height
         self._first = first
         self._looked: list[int] = []
-        self._shelf = Shelf(ROOM)
+        self._cache = DiskCache(ROOM)
         self._pieces: list[Piece] = []
         self._piece: Piece | None = None
         self._ahead: list[Frame] = []
@@ -262,7 +263,7 @@ class HouseFollower:
             view, rig = house.view, house.rig
             if prior.height is not None:
                 view, rig = at_height(house, prior)
-            piece = Piece(self._size, rig, prior, edges, self._shelf, house.vague, in_view)
+            piece = Piece(self._size, rig, prior, edges, self._cache, house.vague, in_view)
             self._pieces.append(piece)
         if self._piece is not None and not (self._piece is piece and piece.goes_on_at(view)):
             self._piece.give_up_missed()
@@ -291,7 +292,7 @@ class HouseFollower:
 
 
 def follow_house(
-    clip: Clip,
+    video: Video,
     progress: Progress = no_progress,
     first: HouseFit | None = None,
     placed: Placed = nobody,
@@ -301,7 +302,7 @@ def follow_house(
 
     Parameters
     ----------
-    clip : Clip
+    video : Video
         Read once, in order; a single picture is a clip of one frame.
     progress : Progress
     first, height : HouseFit, float, optional
@@ -314,9 +315,9 @@ def follow_house(
     SceneError
         No house can be made out in any frame.
     """
-    follower = HouseFollower(clip.size, first, height)
-    for frame in clip:
-        progress("house", clip.passed, clip.expected)
+    follower = HouseFollower(video.size, first, height)
+    for frame in video:
+        progress("house", video.decoded, video.expected)
         for seen, provisional in follower.look(frame):
             placed(seen, provisional)
     for seen, provisional in follower.catch_up():
@@ -326,7 +327,7 @@ def follow_house(
     progress("camera", 1, 1)
     if track is None:
         raise SceneError(
-            f"{clip.files[0]}: no house in view (it is known by two of its circles or more);"
+            f"{video.files[0]}: no house in view (it is known by two of its circles or more);"
             " point at it with `house`, or for another scene with a still camera use"
             " `stick`"
         )

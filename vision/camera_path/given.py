@@ -20,9 +20,6 @@ from curlshot.data.progress import Progress, no_progress
 from curlshot.data.sheet import HOUSE
 from curlshot.vision.camera_path.follow_house import follow_house
 from curlshot.vision.camera_path.joint import HouseTrack, Seen, fit_clip
-from curlshot.vision.film.clip import Clip, Frame, Image
-from curlshot.vision.film.flow import similarity
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.paint import TWELVE, Marks, fixed, joined
 from curlshot.vision.optics.placed import Placed, nobody
@@ -31,6 +28,11 @@ from curlshot.vision.sheet.house import fit_house
 from curlshot.vision.sheet.house_fit import HouseFit, start
 from curlshot.vision.sheet.lines import y_up
 from curlshot.vision.sheet.rings import SQUASHES, Guess
+from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.flow import similarity
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -84,7 +86,7 @@ class GivenHouse:
 
 
 def follow_given(
-    clip: Clip,
+    video: Video,
     house: GivenHouse,
     progress: Progress = no_progress,
     placed: Placed = nobody,
@@ -100,11 +102,11 @@ def follow_given(
     InputError
         Points that cannot be those of a house, or a frame that the clip does not have.
     """
-    frame = _frame(clip, house)
+    frame = _frame(video, house)
     fit = fit_given(frame.image, house, frame=frame.index, t=frame.t)
     if fit is None:
-        return _as_given(clip, frame, house, progress, placed, height)
-    return follow_house(clip, progress, fit, placed, height)
+        return _as_given(video, frame, house, progress, placed, height)
+    return follow_house(video, progress, fit, placed, height)
 
 
 def hypotheses(house: GivenHouse, size: tuple[int, int]) -> list[Guess]:
@@ -168,19 +170,21 @@ def fit_given(
     return fit if off < AWAY else None
 
 
-def _frame(clip: Clip, house: GivenHouse) -> Frame:
+def _frame(video: Video, house: GivenHouse) -> Frame:
     shown = None
-    for frame in clip:
+    for frame in video:
         if house.frame is None or frame.index == house.frame:
             return frame
-        if shown is not None and house.frame in clip.repeated:
+        if shown is not None and house.frame in video.duplicates:
             return shown
         shown = frame
+    if shown is not None and house.frame in video.duplicates:
+        return shown
     if house.frame is None:
-        raise InputError(f"{clip.files[0]}: none of the frames that are used can be read")
+        raise InputError(f"{video.files[0]}: none of the frames that are used can be read")
     raise InputError(
-        f"house {house}: frame {house.frame} is not among those of {clip.files[0].name} that are"
-        f" used, {clip.first} to {clip.first + clip.expected - 1}"
+        f"house {house}: frame {house.frame} is not among those of {video.files[0].name} that are"
+        f" used, {video.first} to {video.first + video.expected - 1}"
     )
 
 
@@ -190,7 +194,7 @@ def _camera(guess: Guess, size: tuple[int, int]) -> Camera:
 
 
 def _as_given(
-    clip: Clip,
+    video: Video,
     frame: Frame,
     house: GivenHouse,
     progress: Progress,
@@ -198,27 +202,27 @@ def _as_given(
     height: float | None,
 ) -> HouseTrack:
     """Take the three points for what they are, in all frames that show the same picture."""
-    guess = hypotheses(house, clip.size)[0]
-    view, rig, prior = start(guess, clip.size)
-    view, rig = y_up(view, rig, clip.size)
-    marks = _marks(house, view, rig, clip.size)
-    seen = [Seen(frame.index, frame.t, view, Kept(marks), True)]
-    track = fit_clip(seen, rig, prior.at_height(height), clip.size)
+    guess = hypotheses(house, video.size)[0]
+    view, rig, prior = start(guess, video.size)
+    view, rig = y_up(view, rig, video.size)
+    marks = _marks(house, view, rig, video.size)
+    seen = [Seen(frame.index, frame.t, view, Cached(marks), True)]
+    track = fit_clip(seen, rig, prior.at_height(height), video.size)
     given = replace(track.cameras[0], rms_px=float("nan"), quality=0.0)
     cameras = []
-    for done, other in enumerate(clip, 1):
+    for done, other in enumerate(video, 1):
         if other.index == frame.index:
             cameras.append(given)
             placed(other, cameras[-1])
         elif _same(frame.image, other.image):
             cameras.append(replace(given, frame=other.index, t=other.t, found=False))
             placed(other, cameras[-1])
-        progress("camera", done, clip.expected)
+        progress("camera", done, video.expected)
     note = (
         f"house {house}: no rings are seen there; the camera rests on the three points alone, y up"
         " in the picture"
     )
-    if len(cameras) < clip.read:
+    if len(cameras) < video.read:
         note += f", and only the {len(cameras)} frames with the same picture are used"
     return replace(track, cameras=tuple(cameras), warnings=(note, *track.warnings))
 

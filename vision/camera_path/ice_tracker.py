@@ -15,13 +15,13 @@ from curlshot.vision.camera_path.edge_tracker import EdgeTracker
 from curlshot.vision.camera_path.joint import Seen
 from curlshot.vision.camera_path.keyframe import Keyframe, keyframe
 from curlshot.vision.camera_path.landmarks import Landmarks
-from curlshot.vision.film.clip import Frame
-from curlshot.vision.film.picture import Picture
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.linear import Observations
 from curlshot.vision.optics.paint import Marks, joined
 from curlshot.vision.optics.pose import VIEW_SIZE, View
 from curlshot.vision.optics.resection import solve_view, solve_views
+from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Picture
 
 Array = NDArray[np.float64]
 
@@ -116,7 +116,7 @@ class IceTracker:
             key_now = keyframe(frame.index, frame.picture, fit.view, rig, fit.cov, key.drift)
             self.landmarks = Landmarks(key_now)
         return [
-            Seen(frame.index, frame.t, fit.view, Kept(each), False, key)
+            Seen(frame.index, frame.t, fit.view, Cached(each), False, key)
             for frame, fit, each in zip(frames, fits, marks, strict=False)
         ]
 

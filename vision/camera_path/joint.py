@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from curlshot.data.sheet import HOUSE
 from curlshot.vision.camera_path.keyframe import Keyframe, replaced
 from curlshot.vision.camera_path.shutter import LEAST_SMEAR
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.astray import astray, motion
 from curlshot.vision.optics.bundle import LOST, NOISE_TRUST, bundle
 from curlshot.vision.optics.camera import Camera, CameraError
@@ -55,6 +54,7 @@ from curlshot.vision.optics.rig import (
 from curlshot.vision.optics.robust import WIDTH, inverse
 from curlshot.vision.optics.shared import Bundle, family, piece_of, sensitivity
 from curlshot.vision.sheet.outline import HALF_WAY, PaintEdge
+from curlshot.vision.video.disk_cache import Cached
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -121,7 +121,7 @@ class Seen:
         Index in the clip and time, s.
     view : View
         Provisional.
-    marks : Kept of Marks
+    marks : Cached of Marks
         What was measured in it.
     found : bool
         Whether its circles fix its view; else it is carried by fixed points of the ice.
@@ -137,7 +137,7 @@ class Seen:
     index: int
     t: float
     view: View
-    marks: Kept[Marks]
+    marks: Cached[Marks]
     found: bool
     key: Keyframe | None = None
     smeared: float = 0.0
@@ -220,13 +220,13 @@ def _carried(seen: Seen, key: Keyframe, by: Camera) -> Seen:
     """Give a frame that is carried by a keyframe the places that its camera tells, with errors."""
     marks = replaced(seen.marks.get(), key, by)
     if by.error is None or marks.across is None:
-        return replace(seen, marks=Kept(marks))
+        return replace(seen, marks=Cached(marks))
     known = marks.line == FIXED
     ice = np.stack([marks.along[known], marks.across[known]], axis=-1)
     own = by.own_place_cov(ice)
     square = float(np.trace(own, axis1=-2, axis2=-1).mean()) / 2
     drift = float(np.hypot(np.sqrt(square), by.error.drift))
-    return replace(seen, marks=Kept(marks), key=replace(key, drift=drift))
+    return replace(seen, marks=Cached(marks), key=replace(key, drift=drift))
 
 
 def _put_aside(cameras: Sequence[Camera], moved: Array) -> list[Camera]:

@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.picture import Image, Picture, Planes
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.paint import FIXED, Marks
 from curlshot.vision.optics.pose import View, camera, project
+from curlshot.vision.video.picture import Image, Picture, Planes
 
 Array = NDArray[np.float64]
 

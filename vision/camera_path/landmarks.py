@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.vision.camera_path.keyframe import Keyframe, enlarged, shrunk, small_of
-from curlshot.vision.film.picture import Image, Picture
 from curlshot.vision.optics.paint import Marks, fixed
 from curlshot.vision.optics.pose import View, project
+from curlshot.vision.video.picture import Image, Picture
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

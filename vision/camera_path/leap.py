@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.vision.camera_path.keyframe import small_of
-from curlshot.vision.film.picture import Image, Picture
 from curlshot.vision.optics.paint import fixed
 from curlshot.vision.optics.pose import View, camera
 from curlshot.vision.optics.resection import solve_view
+from curlshot.vision.video.picture import Image, Picture
 
 Array = NDArray[np.float64]
 

@@ -22,9 +22,6 @@ from curlshot.vision.camera_path.joint import Seen, spread
 from curlshot.vision.camera_path.leap import leapt
 from curlshot.vision.camera_path.replay import EVERY, Glimpse, cut_among, glimpse, shows_again
 from curlshot.vision.camera_path.shutter import LEAST_SMEAR, more_light
-from curlshot.vision.film.clip import Frame
-from curlshot.vision.film.picture import Picture
-from curlshot.vision.film.shelf import Kept, Shelf
 from curlshot.vision.optics.adjust import SHARING, Solution, solve
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.lean import fit_leaning
@@ -44,6 +41,9 @@ from curlshot.vision.optics.predict import MEMORY, predict
 from curlshot.vision.optics.resection import solve_view, solve_views
 from curlshot.vision.optics.rig import Prior
 from curlshot.vision.sheet.house_fit import TILT_GAIN, HouseFit
+from curlshot.vision.video.disk_cache import Cached, DiskCache
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Picture
 
 Array = NDArray[np.float64]
 
@@ -107,7 +107,7 @@ class Piece:
         What the frames share, provisionally, and what is known of it beforehand.
     edges : EdgeTracker
         Refines the views.
-    shelf : Shelf
+    cache : DiskCache
         Where marks and glimpses of the frames are put aside; the pieces of a clip share one.
     vague : bool
         Whether its first frame tells at best roughly how the camera leans.
@@ -130,7 +130,7 @@ class Piece:
     rig: Array
     prior: Prior
     edges: EdgeTracker
-    shelf: Shelf = field(default_factory=Shelf)
+    cache: DiskCache = field(default_factory=DiskCache)
     vague: bool = False
     in_view: float = 1.0
     seen: list[Seen] = field(default_factory=list)
@@ -270,8 +270,8 @@ class Piece:
         self.edges.moved = np.zeros(CIRCLES)
         for frames in (self.seen, *others):
             for k, seen in enumerate(frames):
-                marks = Kept(put_right(seen.marks.get(), moved))
-                marks.put_aside(self.shelf)
+                marks = Cached(put_right(seen.marks.get(), moved))
+                marks.put_aside(self.cache)
                 frames[k] = replace(seen, marks=marks)
         self.rig = self._joint(self._spread()).rig
         self._view_again(MEMORY)
@@ -288,7 +288,7 @@ class Piece:
                 self.edges.light = self.edges.light.taking(seen.share + more[0], more[1])
         for k, seen, _ in smeared:
             self.seen[k] = relit = self.edges.relit(seen)
-            relit.marks.put_aside(self.shelf)
+            relit.marks.put_aside(self.cache)
 
     def take(self, frames: Sequence[Frame], seen: Sequence[Seen]) -> list[tuple[Frame, Camera]]:
         """Take in frames that were followed; give them back with provisional cameras.
@@ -331,7 +331,7 @@ class Piece:
         return self.to_be_looked_at_twice and many and not self.missed
 
     def _add(self, seen: Seen, picture: Picture) -> None:
-        seen.marks.put_aside(self.shelf)
+        seen.marks.put_aside(self.cache)
         self.seen.append(seen)
         self._doubtful = 0 if seen.found or not self.missed else self._doubtful + 1
         self.found += seen.found
@@ -350,7 +350,7 @@ class Piece:
     def keep(self, look: Glimpse) -> None:
         """Keep what the house looks like in the last frame; only it is asked for often."""
         for before in self.glimpses[-1:]:
-            before.kept.put_aside(self.shelf)
+            before.kept.put_aside(self.cache)
         self.glimpses.append(look)
         self._fresh = []
 
@@ -431,7 +431,7 @@ class Piece:
         # Of a wide line, the other edge may have been found this time.
         marks = marks.pick(np.isin(marks.line, (TWELVE, EIGHT, FOUR, CENTRE_LINE, TEE_LINE)))
         near = solve_view(marks, house.view, self.rig, self.size, width=1e3, iterations=30)
-        found = Seen(house.camera.frame, house.camera.t, near.view, Kept(marks), True)
+        found = Seen(house.camera.frame, house.camera.t, near.view, Cached(marks), True)
         joint = self._joint([*self._spread(), found])
         well = min(good.mean() for good in joint.inliers) > LEAST_EXPLAINED
         if not well or joint.rms[-1] > 1.3 * house.rms_px + SAME_RMS_PX:
@@ -463,7 +463,7 @@ class Piece:
         self._zooms, self._doubtful = (float(view.vector[3]),) * 2, 0
         self._ice.forget()
         settled = self.edges.settle([frame], [view], self.rig, view)
-        first = settled[0] if settled else Seen(frame.index, frame.t, view, Kept(marks), True)
+        first = settled[0] if settled else Seen(frame.index, frame.t, view, Cached(marks), True)
         self._add(first, frame.picture)
         self._make_good(before)
         placed = [frame]

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import HOUSE
-from curlshot.vision.film.picture import Picture, lightness_at
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.pose import View, project
+from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.picture import Picture, lightness_at
 
 Array = NDArray[np.float64]
 Halves = NDArray[np.float16]
@@ -53,12 +53,12 @@ class Glimpse:
     ----------
     t : float
         When, s.
-    kept : Kept of ndarray
+    kept : Cached of ndarray
         See `grey`; all of a clip are kept.
     """
 
     t: float
-    kept: Kept[Halves]
+    kept: Cached[Halves]
 
     @property
     def grey(self) -> Halves:
@@ -77,7 +77,7 @@ def glimpse(picture: Picture, view: View, rig: Array, t: float) -> Glimpse:
     grey = lightness_at(picture, across, down).astype(np.float64)
     grey[~seen.reshape(side)] = np.nan
     small = cv2.resize(grey, (CELLS, CELLS), interpolation=cv2.INTER_AREA)
-    return Glimpse(t, Kept(np.asarray(small, np.float16)))
+    return Glimpse(t, Cached(np.asarray(small, np.float16)))
 
 
 def is_replay(now: Glimpse, before: Sequence[Glimpse]) -> bool:

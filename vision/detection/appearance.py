@@ -14,8 +14,8 @@ from curlshot.vision.detection.circles import WALL
 from curlshot.vision.detection.contrast import worth_of
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.relief import BARE, own_contrast
-from curlshot.vision.film.clip import Image
-from curlshot.vision.film.lab import bgr_of, chroma, lab_of
+from curlshot.vision.video.colour import bgr_of, chroma, lab_of
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

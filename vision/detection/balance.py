@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.vision.detection.appearance import Colour
-from curlshot.vision.film.picture import Image, Picture, brightened, colours_at
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.picture import Image, Picture, brightened, colours_at
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.shelf import Kept
+from curlshot.vision.video.disk_cache import Cached
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ class Detection(NamedTuple):
         it was not found.
     cap_samples, granite_samples : ndarray, shape (n, 3)
         Colours of the cap and of the granite, for learning.
-    spectrum : Kept of ndarray or None
+    spectrum : Cached of ndarray or None
         How the cap looked around its centre (`curlshot.vision.spin.handle.cap_spectrum`); None
         where too little of it was seen to tell its angle.
     measured : bool
@@ -74,7 +74,7 @@ class Detection(NamedTuple):
     pixel: tuple[float, float]
     pixel_size: float
     light: tuple[float, float] = (nan, nan)
-    spectrum: Kept[NDArray[np.complex64]] | None = None
+    spectrum: Cached[NDArray[np.complex64]] | None = None
     cap_samples: Array = _NONE
     granite_samples: Array = _NONE
     measured: bool = True

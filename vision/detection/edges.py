@@ -23,7 +23,7 @@ from curlshot.vision.detection.rims import Rim, falls_along
 from curlshot.vision.detection.samples import Samples
 from curlshot.vision.detection.shoulder import HIDDEN, against_beyond
 from curlshot.vision.detection.smeared import middles, swept_share
-from curlshot.vision.film.lab import chroma
+from curlshot.vision.video.colour import chroma
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

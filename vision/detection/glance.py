@@ -15,11 +15,10 @@ from curlshot.vision.detection.measure import measure_discs
 from curlshot.vision.detection.patch import is_plain
 from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.relief import without_handle
-from curlshot.vision.detection.stones import NEAREST, SEARCH, Findings, search_picture
+from curlshot.vision.detection.stones import NEAREST, SEARCH, Findings, Search, search_picture
 from curlshot.vision.detection.strangers import by_shape, strangers, weighed
-from curlshot.vision.film.clip import Image
-from curlshot.vision.film.picture import brightened, image_of, toned
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.picture import Image, brightened, image_of, toned
 
 BOTH_MEASURES = 1.2
 """Least mean of the two evidences of a stone: by its shape, or before any was known, and by what
@@ -27,7 +26,9 @@ was learned. Of 35 real frames, changed in 13 ways, 14 stones that one of the tw
 1.8; of 16 other things one has more than 1.2."""
 
 
-def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> list[Findings]:
+def glance(
+    pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE, search: Search = SEARCH
+) -> list[Findings]:
     """Search each picture, knowing what the stones of all of them look like.
 
     Parameters
@@ -35,6 +36,8 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
     pictures : sequence of (ndarray of shape (h, w, 3), Camera)
     disc : Stone
         Size of the stones, or `plain_disc(radius)` for other discs.
+    search : Search
+        Where stones are searched for, and what they must show.
 
     Returns
     -------
@@ -43,32 +46,32 @@ def glance(pictures: Sequence[tuple[Image, Camera]], disc: Stone = STONE) -> lis
     """
     if not is_plain(disc):
         pictures = [(_lit(image, camera), camera) for image, camera in pictures]
-    first, appearance, made = _first(pictures, disc)
+    first, appearance, made = _first(pictures, disc, search)
     if appearance is not None:
         image, camera = pictures[0]
         table = tones(image, camera, appearance.granite)
         if table is not None:  # what was found is in tones too dark to tell all of it
             lifted = [(image_of(toned(image, table)), camera) for image, camera in pictures]
-            anew = _first(lifted, disc)
+            anew = _first(lifted, disc, search)
             if anew[1] is not None:  # else what seemed to be granite belongs to no stone
                 pictures, (first, appearance, made) = lifted, anew
     if appearance is None:
         return first
-    again = [search_picture(image, camera, appearance, made) for image, camera in pictures]
+    again = [search_picture(image, camera, appearance, made, search) for image, camera in pictures]
     return _with_handles(
         [
-            _with_strangers(image, camera, known, other, appearance, made)
+            _with_strangers(image, camera, known, other, appearance, made, search)
             for (image, camera), known, other in zip(pictures, again, first, strict=True)
         ]
     )
 
 
 def _first(
-    pictures: Sequence[tuple[Image, Camera]], disc: Stone
+    pictures: Sequence[tuple[Image, Camera]], disc: Stone, search: Search
 ) -> tuple[list[Findings], Appearance | None, Stone]:
     """Search pictures for unknown stones; learn what these look like and how they are made."""
     looks = [Look(image, camera, np.empty((0, 2))) for image, camera in pictures]
-    first, made = strangers(looks, disc, SEARCH)
+    first, made = strangers(looks, disc, search)
     first = _with_handles(first)
     return first, learn(convincing(stone for found in first for stone in found.stones)), made
 
@@ -100,6 +103,7 @@ def _with_strangers(
     other: Findings,
     look: Appearance,
     disc: Stone,
+    search: Search,
 ) -> Findings:
     """Add stones that were found before any was known, or by their shape, and then passed over.
 
@@ -116,7 +120,7 @@ def _with_strangers(
     if not some_are_strange:
         here = Look(image, camera, np.empty((0, 2)))
         taken = (*known.stones, *left)
-        shapes = [weighed(s, look.granite) for s in by_shape(here, taken, disc, SEARCH)]
+        shapes = [weighed(s, look.granite) for s in by_shape(here, taken, disc, search)]
         left += [stone for stone in convincing(shapes) if apart(stone, taken)]
     if not left:
         return known

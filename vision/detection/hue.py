@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.vision.detection.rays import Rays
-from curlshot.vision.film.lab import lab_of
-from curlshot.vision.film.picture import TO_CHROMA
+from curlshot.vision.video.colour import lab_of
+from curlshot.vision.video.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

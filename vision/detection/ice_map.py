@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.picture import Image, Picture, colours_at, reduced
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.picture import Image, Picture, colours_at, reduced
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

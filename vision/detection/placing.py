@@ -14,11 +14,11 @@ from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.measure import Measures
 from curlshot.vision.detection.patch import handle_radii
 from curlshot.vision.detection.rays import Look
-from curlshot.vision.film.lab import chroma
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.cameras import Cameras
 from curlshot.vision.spin.handle import cap_spectrum
+from curlshot.vision.video.colour import chroma
+from curlshot.vision.video.disk_cache import Cached
 
 Array = NDArray[np.float64]
 
@@ -85,7 +85,7 @@ def detections(
         Detection(
             x, y, sd_x, sd_y, (nan, nan), colour, visible, score, tuple(outline), wall,
             tuple(bends), (u, v), nan, (light_x, light_y),
-            Kept(spectrum.copy()) if told else None, swept=swept,
+            Cached(spectrum.copy()) if told else None, swept=swept,
         )
         for colour, spectrum, (x, y), (sd_x, sd_y), visible, score, outline, wall, bends, (u, v),
         told, (light_x, light_y), swept in rows

@@ -13,10 +13,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.lab import lab_of
-from curlshot.vision.film.picture import Picture, colours_at
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.cameras import Cameras
+from curlshot.vision.video.colour import lab_of
+from curlshot.vision.video.picture import Picture, colours_at
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

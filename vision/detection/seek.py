@@ -23,9 +23,9 @@ from curlshot.vision.detection.appearance import Appearance, any_stone, membersh
 from curlshot.vision.detection.ice_map import IceMap, rectify
 from curlshot.vision.detection.patch import CAP_END, RING_BEGIN, RING_END, in_granite, is_plain
 from curlshot.vision.detection.shape import NO_BALLOT, ballot
-from curlshot.vision.film.lab import lab_of
-from curlshot.vision.film.picture import Picture, colours_at
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.colour import lab_of
+from curlshot.vision.video.picture import Picture, colours_at
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -17,8 +17,8 @@ from curlshot.data.sheet import Stone
 from curlshot.vision.detection.appearance import Appearance, membership
 from curlshot.vision.detection.ice_map import IceMap
 from curlshot.vision.detection.patch import CAP_END, RING_BEGIN, RING_END
-from curlshot.vision.film.lab import lab_of
-from curlshot.vision.film.picture import colours_at
+from curlshot.vision.video.colour import lab_of
+from curlshot.vision.video.picture import colours_at
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

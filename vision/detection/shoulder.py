@@ -24,7 +24,7 @@ from curlshot.vision.detection.mixture import (
     moved,
     past,
 )
-from curlshot.vision.film.picture import TO_CHROMA
+from curlshot.vision.video.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]

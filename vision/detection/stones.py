@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from curlshot.config import SearchConfig
 from curlshot.data.sheet import STONE, Stone
 from curlshot.vision.detection.appearance import Appearance
 from curlshot.vision.detection.detection import Detection, Refusal
@@ -22,8 +23,8 @@ from curlshot.vision.detection.placing import detections, placed_by
 from curlshot.vision.detection.rays import Look, Rays
 from curlshot.vision.detection.samples import CLEARLY, well_within
 from curlshot.vision.detection.seek import Bounds, Candidates, seek
-from curlshot.vision.film.picture import Picture
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.picture import Picture
 
 Array = NDArray[np.float64]
 
@@ -44,43 +45,53 @@ LEAST_UNLIKE = 0.25
 
 @dataclass(frozen=True)
 class Search:
-    """Where stones are sought and what they must show.
+    """Where stones are searched for in one pass, and what they must show.
 
     Attributes
     ----------
-    x_max, y_max : float
-        Stones are sought on |x| ≤ x_max, |y| ≤ y_max, m: y is up in the picture, and cameras stand
-        at either end of the sheet.
+    half_width, half_length : float
+        Stones are searched for on |x| and |y| up to these, m.
     radius_px : float
         Radius of a disc on the rectified map, px.
-    least_score : float
-        Template response (0 to 2) from which a place is looked at.
-    least_visible : float
-        Share of the rays that must look like a stone.
-    least_evidence, least_rim : float
-        Least evidence for a stone (0 to about 3) and for a plain disc (0 to 1).
-    least_again : float
-        Least evidence for a stone where one was seen a moment ago.
-    most_shift : float
-        Farther than this from where the response peaks, in radii of cap or disc, lies no centre.
+    min_response : float
+        Template response (0 to 2) from which a place is examined.
+    min_visible_ratio, min_evidence, min_repeated_evidence, min_disc_evidence : float
+        See `curlshot.config.SearchConfig`.
+    max_centre_shift_ratio : float
+        See `curlshot.config.SearchConfig`.
     """
 
-    x_max: float = 2.40
-    y_max: float = 9.0
-    radius_px: float = 11.6
-    least_score: float = 0.45
-    least_visible: float = 0.30
-    least_evidence: float = 1.05
-    least_again: float = 0.7
-    least_rim: float = 0.6
-    most_shift: float = 0.35
+    half_width: float
+    half_length: float
+    radius_px: float
+    min_response: float
+    min_visible_ratio: float
+    min_evidence: float
+    min_repeated_evidence: float
+    min_disc_evidence: float
+    max_centre_shift_ratio: float
+
+    @classmethod
+    def of(cls, config: SearchConfig, *, clip: bool = False) -> Search:
+        """Return the search of a single frame, or of a frame of a `clip`, on a coarser map."""
+        return cls(
+            half_width=config.search_half_width,
+            half_length=config.search_half_length,
+            radius_px=config.tracking_radius_px if clip else config.search_radius_px,
+            min_response=config.tracking_min_response if clip else config.search_min_response,
+            min_visible_ratio=config.min_visible_ratio,
+            min_evidence=config.min_evidence,
+            min_repeated_evidence=config.min_repeated_evidence,
+            min_disc_evidence=config.min_disc_evidence,
+            max_centre_shift_ratio=config.max_centre_shift_ratio,
+        )
 
 
-SEARCH = Search()
-"""For a single picture, which has one chance."""
+SEARCH = Search.of(SearchConfig())
+"""For a single frame, which has one chance."""
 
-FOLLOWING = Search(radius_px=6.5, least_score=0.3)
-"""For a clip: a coarser map, for what one picture hides the next ones show."""
+FOLLOWING = Search.of(SearchConfig(), clip=True)
+"""For a clip, where the next frames show what one hides."""
 
 
 @dataclass(frozen=True)
@@ -150,7 +161,7 @@ def sought_in(
     area = whole_ice(camera, disc, search) if bounds is None else bounds
     return seek(
         image, camera, appearance, disc, area,
-        radius_px=search.radius_px, least=search.least_score,
+        radius_px=search.radius_px, least=search.min_response,
     )  # fmt: skip
 
 
@@ -163,7 +174,7 @@ def measured(look: Look, sought: Candidates, disc: Stone, search: Search) -> Fin
     refused: list[Refusal] = []
     # The second time from the centre that the first has found, roughly and without the handle.
     rough = (
-        replace(search, least_evidence=search.least_again),
+        replace(search, min_evidence=search.min_repeated_evidence),
         replace(EFFORT, rounds=1, light=False, handle_rings=0),
     )
     for least, effort in (rough, (search, EFFORT)):
@@ -191,7 +202,7 @@ def measured(look: Look, sought: Candidates, disc: Stone, search: Search) -> Fin
 def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
     """Part of the ice on which to look: x0, x1, y0, y1, m."""
     if not is_plain(disc):
-        return -search.x_max, search.x_max, -search.y_max, search.y_max
+        return -search.half_width, search.half_width, -search.half_length, search.half_length
     width, height = camera.size
     corners = camera.ice(np.array([[0, 0], [width, 0], [0, height], [width, height]], float))
     (x0, y0), (x1, y1) = corners.min(0).tolist(), corners.max(0).tolist()
@@ -201,19 +212,22 @@ def whole_ice(camera: Camera, disc: Stone, search: Search) -> Bounds:
 def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
     """Say of each place why it shows no stone; an empty text where it does."""
     plain = is_plain(disc)
-    least = search.least_rim if plain else search.least_evidence
+    least = search.min_disc_evidence if plain else search.min_evidence
     size = disc.radius if plain else disc.cap_radius
     faults = np.full(len(seen.ok), "", dtype=object)
     beside = hollow = np.zeros(len(seen.ok), bool)
     if plain:
         hollow = _hollow(seen.rays, disc)
     else:
-        beside = np.abs(seen.centre[:, 0]) > search.x_max - 0.4 * disc.radius
+        beside = np.abs(seen.centre[:, 0]) > search.half_width - 0.4 * disc.radius
     for wrong, why in (
         (beside, "beside the sheet"),
         (seen.evidence + seen.excused < least, "too little of a stone about it"),
-        (seen.shift > search.most_shift * size, "its edges are those of something else"),
-        (seen.visible < search.least_visible, "hardly any of it is seen"),
+        (
+            seen.shift > search.max_centre_shift_ratio * size,
+            "its edges are those of something else",
+        ),
+        (seen.visible < search.min_visible_ratio, "hardly any of it is seen"),
         (hollow, "a ring with nothing in it"),
         (~seen.ok, "no cap with granite around it" if not plain else "no circle of that size"),
     ):

@@ -39,8 +39,8 @@ from curlshot.vision.detection.stones import (
     search_picture,
     sought_in,
 )
-from curlshot.vision.film.lab import chroma
 from curlshot.vision.optics.cameras import Cameras
+from curlshot.vision.video.colour import chroma
 
 Array = NDArray[np.float64]
 

@@ -9,5 +9,5 @@ Fits: `resection` of one view from its marks, `adjust` of a few frames, `bundle`
 result is in `shared`; `linear` has residuals and derivatives, `robust` and `arrow` the algebra.
 `predict` says where the next view will be, `quality` how good each is, `astray` what video coding
 adds. Cameras that nobody fits come from a `stick`, from `camera_file` or from Tracker
-(`project_clip`, `tracker_view`). `letterbox` cuts off black bars, `placed` tells of each frame.
+(`project_clip`, `tracker_view`). `placed` is the callback for each frame.
 """

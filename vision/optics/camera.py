@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -199,27 +199,36 @@ class Camera:
             self.project(np.asarray(ice, float)[..., None, :] + projection.AROUND)
         )
 
+    def retimed(self, t: float) -> Camera:
+        """Return the camera at another time, s."""
+        return replace(self, t=t)
 
-def taken_at(cameras: Sequence[Camera], times: Mapping[int, float]) -> tuple[Camera, ...]:
-    """Give cameras the times of their frames, s; those of frames without a time are left out."""
-    return tuple(replace(one, t=times[one.frame]) for one in cameras if one.frame in times)
+    def repeated(self, duplicate: int, t: float) -> Camera:
+        """Return the camera of a frame that shows this one again: carried, not found in it."""
+        return replace(self, frame=duplicate, t=t, found=False)
 
+    def padded(self, bars: tuple[int, int], size: tuple[int, int]) -> Camera:
+        """Return the camera in pixels of a larger picture, which has bars around this one.
 
-def carried(
-    cameras: Sequence[Camera], repeated: Mapping[int, tuple[float, int]]
-) -> tuple[Camera, ...]:
-    """Give frames that repeat one before its camera, not as found in them; in order of frames.
-
-    Parameters
-    ----------
-    repeated : mapping of int to (float, int)
-        Of such a frame the time, s, and the frame that it repeats.
-    """
-    known = {camera.frame: camera for camera in cameras}
-    for frame, (t, of) in sorted(repeated.items()):
-        if of in known:
-            known[frame] = replace(known[of], frame=frame, t=t, found=False)
-    return tuple(known[frame] for frame in sorted(known))
+        Parameters
+        ----------
+        bars : (int, int)
+            Widths at either side, and at top and bottom, px.
+        size : (int, int)
+            Of the larger picture, px.
+        """
+        moved = np.eye(3)
+        moved[:2, 2] = bars
+        # The axis of the lens is in the middle of both; distortion is in half diagonals.
+        grown = (projection.middle(size)[1] / projection.middle(self.size)[1]) ** 2
+        by = np.diag([*np.ones(7), grown, grown**2])
+        error = self.error
+        if error is not None:
+            error = replace(error, shared=by @ error.shared @ by, own=by @ error.own @ by)
+        return replace(
+            self, homography=moved @ self.homography, size=size, k1=grown * self.k1,
+            k2=grown**2 * self.k2, error=error,
+        )  # fmt: skip
 
 
 def camera_columns(cameras: Sequence[Camera]) -> Columns:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from curlshot.data.errors import InputError
 from curlshot.data.progress import Progress, no_progress
 from curlshot.data.sheet import STONE
-from curlshot.vision.film.clip import Clip
 from curlshot.vision.optics.camera import CAMERA_COLUMNS, Camera
 from curlshot.vision.optics.placed import Placed, nobody
+from curlshot.vision.video.reader import Video
 
 Array = NDArray[np.float64]
 
@@ -28,13 +28,13 @@ LEAST_AREA = 1e-3
 
 
 def given_cameras(
-    clip: Clip, path: Path, progress: Progress = no_progress, placed: Placed = nobody
+    video: Video, path: Path, progress: Progress = no_progress, placed: Placed = nobody
 ) -> tuple[tuple[Camera, ...], tuple[str, ...]]:
     """Give the frames of a clip the cameras of a table, and what a person should know.
 
     Parameters
     ----------
-    clip : Clip
+    video : Video
         Says the size of the picture and the time of each frame.
     path : Path
         A table as ``camera.csv``: of one row, for all frames, or of one row per frame; frames
@@ -53,16 +53,16 @@ def given_cameras(
     frames = table["frame"].astype(int).tolist()
     row = {frame: k for k, frame in enumerate(frames)}
     cameras = []
-    for done, frame in enumerate(clip, 1):
+    for done, frame in enumerate(video, 1):
         if len(row) == 1 or frame.index in row:
             given = table.iloc[row.get(frame.index, 0)]
-            cameras.append(_camera(given, frame.index, frame.t, clip.size))
+            cameras.append(_camera(given, frame.index, frame.t, video.size))
             placed(frame, cameras[-1])
-        progress("camera", done, clip.expected)
+        progress("camera", done, video.expected)
     if not cameras:
         raise InputError(
             f"{path}: has frames {min(row)} to {max(row)}, none of those of"
-            f" {clip.files[0].name} that are used"
+            f" {video.files[0].name} that are used"
         )
     notes = [f"{path.name}: how well the given camera is known is not part of the errors"]
     if any(camera.position is None for camera in cameras):
@@ -70,9 +70,9 @@ def given_cameras(
             f"{path.name}: the camera's place is not given; stones away from the point below it"
             " may be centimetres off, for their caps are above the ice"
         )
-    if len(cameras) < clip.read:
-        left = clip.read - len(cameras)
-        notes.append(f"{path.name}: no camera for {left} of {clip.read} frames; left out")
+    if len(cameras) < video.read:
+        left = video.read - len(cameras)
+        notes.append(f"{path.name}: no camera for {left} of {video.read} frames; left out")
     return tuple(cameras), tuple(notes)
 
 

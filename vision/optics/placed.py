@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.frame import Frame
 
 Placed = Callable[[Frame, Camera], None]
 """Takes the frames that have a camera, in order; the camera may be provisional."""

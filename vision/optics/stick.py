@@ -6,9 +6,9 @@ import numpy as np
 
 from curlshot.data.errors import InputError
 from curlshot.data.progress import Progress, no_progress
-from curlshot.vision.film.clip import Clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.placed import Placed, nobody
+from curlshot.vision.video.reader import Video
 
 Stick = tuple[float, float, float, float, float]
 """Two ends (x1, y1, x2, y2), px, and the length, m."""
@@ -42,7 +42,7 @@ def stick_camera(stick: Stick, size: tuple[int, int], frame: int = 0, t: float =
 
 
 def stick_cameras(
-    clip: Clip, stick: Stick, progress: Progress = no_progress, placed: Placed = nobody
+    video: Video, stick: Stick, progress: Progress = no_progress, placed: Placed = nobody
 ) -> tuple[Camera, ...]:
     """Give every frame of a clip the camera of the stick; `placed` is told of each.
 
@@ -52,17 +52,17 @@ def stick_cameras(
         As `stick_camera`, or where an end lies beside the picture, as it does when its pixels were
         read off a larger copy of it: its scale would then be wrong.
     """
-    width, height = clip.size
+    width, height = video.size
     if not all(0 <= x <= width and 0 <= y <= height for x, y in (stick[:2], stick[2:4])):
         raise InputError(
             f"stick {_written(stick)}: not in a picture of {width} × {height} px; read its ends in"
             " the clip's own pixels"
         )
     cameras: list[Camera] = []
-    for done, frame in enumerate(clip, 1):
-        cameras.append(stick_camera(stick, clip.size, frame.index, frame.t))
+    for done, frame in enumerate(video, 1):
+        cameras.append(stick_camera(stick, video.size, frame.index, frame.t))
         placed(frame, cameras[-1])
-        progress("camera", done, clip.expected)
+        progress("camera", done, video.expected)
     return tuple(cameras)
 
 

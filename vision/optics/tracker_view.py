@@ -16,9 +16,9 @@ from curlshot.data.measurement import Measurement
 from curlshot.data.sheet import HOUSE
 from curlshot.data.trk import Coordinates
 from curlshot.data.trk_write import View
-from curlshot.vision.film.clip import Clip, open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.camera_file import cameras_of
+from curlshot.vision.video.reader import Video, open_video
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ def projected(measured: Measurement, clip_files: Sequence[Path], path: Path) -> 
     InputError
         No clip, no such table of cameras, or not of these tracks.
     """
-    clip = open_clip(clip_files)
+    clip = open_video(clip_files)
     packed: dict[str, Path] = {}
     if path.suffix.lower() == ".trz":
         packed = {f"videos/{file.name}": file for file in clip.files}
@@ -53,13 +53,13 @@ def projected(measured: Measurement, clip_files: Sequence[Path], path: Path) -> 
 
 
 def view_over(
-    clip: Clip, camera_csv: Path, detections: pd.DataFrame, video: tuple[str, ...]
+    clip: Video, camera_csv: Path, detections: pd.DataFrame, video: tuple[str, ...]
 ) -> tuple[View, Array, float]:
     """Place tracks in the pictures of a clip by the cameras of a run.
 
     Parameters
     ----------
-    clip : Clip
+    clip : Video
         What Tracker shall show.
     camera_csv : Path
         Of the run that measured the tracks.

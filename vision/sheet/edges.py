@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.picture import TO_CHROMA
 from curlshot.vision.optics.paint import CIRCLES
 from curlshot.vision.sheet.normals import SAMPLES, Normals, Profiles, means_of_ends
 from curlshot.vision.sheet.stations import THIN
+from curlshot.vision.video.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

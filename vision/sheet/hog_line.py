@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import SHEET
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.adjust import SHARING, Solution, solve
 from curlshot.vision.optics.lean import fit_leaning
 from curlshot.vision.optics.paint import HOG_LINE, Marks, joined
@@ -25,6 +24,7 @@ from curlshot.vision.optics.resection import ROUND
 from curlshot.vision.optics.rig import BACK_Y, BENT, HOG_Y, K1, WIDE, Prior, with_lens
 from curlshot.vision.sheet.lines import back_end, upright
 from curlshot.vision.sheet.marks import EDGE_SD
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 

@@ -13,12 +13,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.pose import rescaled
 from curlshot.vision.optics.rig import ANYWHERE, POSITION
 from curlshot.vision.sheet.house_fit import HouseFit, RoughFit, fit_roughly, refine, start
 from curlshot.vision.sheet.proof import is_house, stands_alone
 from curlshot.vision.sheet.rings import Guess, guesses
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import HOUSE
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.adjust import SHARING, Solution, solve
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.lean import fit_leaning
@@ -36,6 +35,7 @@ from curlshot.vision.sheet.outline import HALF_WAY, PaintEdge, find_edge
 from curlshot.vision.sheet.proof import worth
 from curlshot.vision.sheet.rings import Guess
 from curlshot.vision.sheet.straight import LEAST, by_sides
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import HOUSE, SHEET
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.pose import View, pictured, project, turned
 from curlshot.vision.optics.rig import SIDE_L, SIDE_R
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]

@@ -14,7 +14,6 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.picture import Picture, channels_at
 from curlshot.vision.optics.paint import CIRCLES, FIXED, TWELVE, Marks
 from curlshot.vision.sheet.edges import crossings, steps
 from curlshot.vision.sheet.normals import OUTSIDE, SAMPLES, Normals, Profiles, lay_out
@@ -23,6 +22,7 @@ from curlshot.vision.sheet.outlined import outlines, summed
 from curlshot.vision.sheet.runs import Curves, Runs, smooth
 from curlshot.vision.sheet.stations import BLOCK, THIN
 from curlshot.vision.sheet.stripes import Blocks, find_stripes
+from curlshot.vision.video.picture import Picture, channels_at
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -16,7 +16,6 @@ from math import erf, inf, pi, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.picture import TO_CHROMA, Picture
 from curlshot.vision.optics.paint import CIRCLES, EIGHT, TWELVE
 from curlshot.vision.optics.pose import View
 from curlshot.vision.optics.robust import regress
@@ -24,6 +23,7 @@ from curlshot.vision.sheet.edges import SHARPNESS
 from curlshot.vision.sheet.marks import Evidence, profiles
 from curlshot.vision.sheet.normals import SAMPLES, lay_out
 from curlshot.vision.sheet.outline import PaintEdge
+from curlshot.vision.video.picture import TO_CHROMA, Picture
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import HOUSE
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.paint import EIGHT, TWELVE
 from curlshot.vision.optics.pose import View, pictured
 from curlshot.vision.sheet.lines import clearness
 from curlshot.vision.sheet.marks import Evidence
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 

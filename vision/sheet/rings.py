@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import HOUSE
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.rig import OVERHEAD, R4, R8
 from curlshot.vision.sheet.tilt import Rounding, Tilt, rounded
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 

@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.adjust import Solution, solve
 from curlshot.vision.optics.paint import Marks
 from curlshot.vision.optics.pose import View, camera, turned
 from curlshot.vision.optics.resection import ROUND
 from curlshot.vision.optics.rig import ANYWHERE, POSITION
 from curlshot.vision.sheet.lines import SURE_STEP, lesser_side_step, upright
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 

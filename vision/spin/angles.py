@@ -14,11 +14,11 @@ from math import ceil, pi
 
 import numpy as np
 
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.align import TOGETHER, Array, Complex, turned
 from curlshot.vision.spin.facing import angles_between
 from curlshot.vision.spin.handle import HandleAngles, handle_angles
 from curlshot.vision.spin.pitch import of_axes
+from curlshot.vision.video.disk_cache import Cached
 
 MOST = 1000
 """Pictures that are looked at together at most: some 20 MB. Parts that are seen in different slants
@@ -28,7 +28,7 @@ stone is in one part as long as it is under way, at 60 frames a second as well."
 
 def angles_in_parts(
     times: Array,
-    spectra: Sequence[Kept[Complex] | None],
+    spectra: Sequence[Cached[Complex] | None],
     radii: Array,
     sd_centre: Array,
     most: int = MOST,
@@ -41,7 +41,7 @@ def angles_in_parts(
     ----------
     times : ndarray, shape (n,)
         s, increasing.
-    spectra : sequence of Kept of ndarray or None
+    spectra : sequence of Cached of ndarray or None
         Read when their part is due.
     radii, sd_centre : ndarray
         As for `curlshot.vision.spin.handle.handle_angles`.
@@ -95,7 +95,7 @@ def angles_in_parts(
 
 def _part(
     times: Array,
-    kept: Sequence[Kept[Complex]],
+    kept: Sequence[Cached[Complex]],
     rings: slice,
     radii: Array,
     sd_centre: Array,

@@ -13,7 +13,7 @@ from curlshot.tests.helpers.vision.stones import (
     scene_of,
 )
 from curlshot.vision.association.follower import StoneView
-from curlshot.vision.film.clip import Frame
+from curlshot.vision.video.frame import Frame
 
 Places = list[tuple[float, float]]
 CAPS = (RED, YELLOW, RED)

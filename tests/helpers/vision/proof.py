@@ -8,11 +8,11 @@ import cv2
 import numpy as np
 
 from curlshot.synthetic import PAINTS, sample_scene
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.pose import View
 from curlshot.vision.optics.rig import OVERHEAD, start_rig
 from curlshot.vision.sheet.marks import Evidence, measure_marks
 from curlshot.vision.sheet.proof import is_house
+from curlshot.vision.video.picture import Image
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 SIZE = (960, 540)

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from curlshot.data.sheet import STONE
 from curlshot.vision.detection.detection import Detection
 from curlshot.vision.detection.patch import handle_radii
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.handle import cap_spectrum
+from curlshot.vision.video.disk_cache import Cached
 
 RADII = handle_radii(STONE)
 RAYS = 48
@@ -33,5 +33,5 @@ def seen(height: float, pixel: float = 0.01) -> Detection:
     """A stone whose handle is so much lighter than its cap."""
     return Detection(
         0.0, 0.0, 0.002, 0.002, (0.0, 0.0), np.array([120.0, 190.0, 165.0]), 1.0, 2.0,
-        (1.0, 0.98), 0.0, (0.0,) * 6, (0.0, 0.0), pixel, spectrum=Kept(cap(bar(height), 1.0)),
+        (1.0, 0.98), 0.0, (0.0,) * 6, (0.0, 0.0), pixel, spectrum=Cached(cap(bar(height), 1.0)),
     )  # fmt: skip

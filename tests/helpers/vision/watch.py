@@ -13,8 +13,8 @@ from curlshot.tests.helpers.vision.stones import (
     YELLOW,
     scene_of,
 )
-from curlshot.vision.film.clip import Image
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.picture import Image
 
 AT_REST = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 

@@ -12,8 +12,8 @@ from curlshot.report.check import check_figure
 from curlshot.report.looks import Look
 from curlshot.tests.helpers.report.looking import SIZE, camera, stone, table
 from curlshot.vision.detection.detection import Refusal
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.frame import Frame
 
 
 def house_picture() -> np.ndarray:

@@ -3,15 +3,16 @@ from __future__ import annotations
 import av
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.report.overlay import write_overlay
 from curlshot.tests.helpers.report.browser import needs_chromium
 from curlshot.tests.helpers.report.clips import camera, pictures
-from curlshot.vision.film.clip import open_clip
+from curlshot.vision.video.reader import open_video
 
 
 @needs_chromium
 def test_it_plays_in_a_browser(browser, tmp_path, shot):
-    clip = open_clip(pictures(tmp_path, 25), fps=25.0)
+    clip = open_video(pictures(tmp_path, 25), VideoConfig(fps=25.0))
     path = tmp_path / "overlay.mp4"
     assert write_overlay(clip, [camera(k) for k in range(25)], shot.tracks, (), path) == 0.0
     with av.open(str(path)) as video:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.data.results import Results, Told
 from curlshot.data.sheet import HOUSE
 from curlshot.physics.curl import FCV1Curl
@@ -25,7 +26,7 @@ from curlshot.report.overlay import write_overlay
 from curlshot.report.page import write_report
 from curlshot.tests.helpers.report.browser import Browser, Tab, needs_chromium
 from curlshot.tests.helpers.report.clips import camera, pictures
-from curlshot.vision.film.clip import open_clip
+from curlshot.vision.video.reader import open_video
 
 pytestmark = needs_chromium
 
@@ -78,7 +79,7 @@ def results(shot) -> Results:
 def page(tmp_path_factory, shot, results) -> Path:
     folder = tmp_path_factory.mktemp("browser")
     frames = tmp_path_factory.mktemp("frames")
-    clip = open_clip(pictures(frames, 50), fps=25.0)
+    clip = open_video(pictures(frames, 50), VideoConfig(fps=25.0))
     start = write_overlay(clip, [camera(0)], shot.tracks, (), folder / "overlay.mp4")
     return write_report(
         folder,

@@ -16,12 +16,15 @@ from curlshot.synthetic.clip import render_still
 from curlshot.tests.helpers.vision.stones import RED, YELLOW, scene_of
 from curlshot.vision.association.watch import Watch
 from curlshot.vision.camera_path.follow_house import follow_house
-from curlshot.vision.film.clip import Clip, Frame, Image
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import Image
+from curlshot.vision.video.reader import Video
+from curlshot.vision.video.source import ImageFiles
 
 PLACES = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 
 
-class Counted(Clip):
+class Counted(Video):
     """A clip of one picture over and over, which counts how many of its copies are held.
 
     `traced` is the memory in use before two of the frames, bytes, if it is traced.
@@ -29,12 +32,12 @@ class Counted(Clip):
 
     def __init__(self, picture: Image, frames: int) -> None:
         height, width, _ = picture.shape
-        super().__init__((Path("again.mp4"),), (width, height), 25.0, frames)
+        super().__init__(ImageFiles((Path("again.png"),), (width, height), 25.0, frames))
         self.picture, self.held, self.most = picture, 0, 0
         self.traced: list[int] = []
 
     def __iter__(self) -> Iterator[Frame]:
-        for index in range(self.frames):
+        for index in range(self.expected):
             if index in (72, 144):
                 gc.collect()
                 self.traced.append(tracemalloc.get_traced_memory()[0])

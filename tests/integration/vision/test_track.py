@@ -7,16 +7,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.data.sheet import STONE
 from curlshot.physics.local_fit.contacts import find_contacts
 from curlshot.synthetic.scoring import score_tracks
 from curlshot.vision.detection.stones import plain_disc
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.stick import stick_cameras
 from curlshot.vision.track import (
     track_stones,
 )
+from curlshot.vision.video.reader import open_video
 
 
 @pytest.mark.parametrize("name", ["pyeongchang_two_hits", "lgt_glancing"])
@@ -32,7 +33,7 @@ def test_real_stones(shared: Path, name: str) -> None:
     )  # fmt: skip
     assert all(frame["k1"] == 0 for frame in truth["frames"])
     tracks = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
-    clip = open_clip([shared / "clips" / f"semireal_{name}.mp4"], frames=(40, 110))
+    clip = open_video([shared / "clips" / f"semireal_{name}.mp4"], VideoConfig(frames=(40, 110)))
     stones = track_stones(clip, cameras, disc=STONE)
     score = score_tracks(stones.detections.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
     assert score.recall > 0.97
@@ -48,7 +49,7 @@ def test_real_stones(shared: Path, name: str) -> None:
 def test_balls_among_projected_rings_hit_each_other(
     shared: Path, name: str, last: int | None, hit: float
 ) -> None:
-    clip = open_clip([shared / "clips" / f"{name}.mp4"], frames=(0, last))
+    clip = open_video([shared / "clips" / f"{name}.mp4"], VideoConfig(frames=(0, last)))
     cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
     seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).detections
     (contact,) = find_contacts(seen, 0.0286)
@@ -57,7 +58,7 @@ def test_balls_among_projected_rings_hit_each_other(
 
 
 def test_pucks_on_a_dark_table(shared: Path) -> None:
-    clip = open_clip([shared / "clips" / "collision-pucks.mp4"], frames=(2, 31))
+    clip = open_video([shared / "clips" / "collision-pucks.mp4"], VideoConfig(frames=(2, 31)))
     cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))
     stones = track_stones(clip, cameras, disc=plain_disc(0.0465))
     table = stones.detections

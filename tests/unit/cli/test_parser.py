@@ -60,7 +60,7 @@ def test_the_version_is_told(capsys) -> None:
 def test_inputs_come_in_the_order_they_were_named() -> None:
     parsed = command_line("1.0").parse_args(["run", "b.txt", "a.txt", "--mass", "A=2"])
     assert [str(name) for name in parsed.inputs] == ["b.txt", "a.txt"]
-    assert parsed.mass == [("A", 2.0)]
+    assert parsed.masses == [("A", 2.0)]
 
 
 def test_the_help_of_simulate_has_a_shot_with_every_key(capsys, tmp_path: Path) -> None:

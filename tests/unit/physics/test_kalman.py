@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.data.measurement import Duplicate
 from curlshot.data.tracks import TRACK_COLUMNS, check_detections
 from curlshot.physics.filter import reference_filter as reference
 from curlshot.physics.filter.rate_filter import filtered
@@ -189,7 +190,7 @@ def test_frames_in_which_nothing_was_measured_have_states_where_they_are_wanted(
     hits = find_contacts(seen, RADIUS)
     without = smooth(seen, hits, radius=RADIUS)
     t = float(seen["t"].iloc[10]) + 0.005
-    tracks = smooth(seen, hits, radius=RADIUS, unseen={9999: t})
+    tracks = smooth(seen, hits, radius=RADIUS, duplicates={9999: Duplicate(t, 10)})
     added = tracks["frame"] == 9999
     off, sd = errors(tracks[added], motion)
     assert len(off) == 2 and (tracks["seen"][added] == 0).all() and (tracks["t"][added] == t).all()
@@ -310,8 +311,8 @@ def test_a_stone_at_rest_that_was_moved_unseen_lies_where_it_is_seen(run: Filter
     table[["x", "y"]] += rng.normal(0, 0.001, (len(t), 2))
     hidden = (t > 1.05) & (t < 1.55)
     table = table[~hidden]
-    unseen = {int(k): float(t[k]) for k in np.flatnonzero(hidden)}
-    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, unseen=unseen)
+    unseen = {int(k): Duplicate(float(t[k]), -1) for k in np.flatnonzero(hidden)}
+    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, duplicates=unseen)
     off, sd = (tracks["y"] - y).to_numpy(), tracks["sd_y"].to_numpy()
     assert np.abs(off[~hidden]).max() < 0.001
     assert (tracks["seen"] == ~hidden).all()
@@ -342,8 +343,8 @@ def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -
     hitting["x"] = np.where(t < 7, 1.5, 0.1) * (t - 7) - 2 * RADIUS
     detections = check_detections(pd.concat([hitting, table]))
     contacts = [Contact(7.0, 0.001, ("A", "B"), (1.0, 0.0))]
-    unseen = {round(25 * at): float(at) for at in when}
-    tracks = smooth(detections, contacts, radius=RADIUS, run=run, unseen=unseen)
+    unseen = {round(25 * at): Duplicate(float(at), -1) for at in when}
+    tracks = smooth(detections, contacts, radius=RADIUS, run=run, duplicates=unseen)
     b = tracks[(tracks["stone"] == "B") & tracks["t"].between(3.6, 4.6)]
     assert (np.abs(b["y"] - 0.8 + 0.05 * np.maximum(4 - b["t"], 0) ** 2) < 0.003).all()
     assert b["omega"].notna().all()
@@ -354,8 +355,8 @@ def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -
 def test_a_stone_that_stopped_and_was_turned_unseen_did_not_spin_before(run: Filter) -> None:
     later = (np.arange(0, 9, 1 / 25) > 6).astype(float)
     table, when = stopped((5.8, 6.4), y=0.3 * later, theta=2.5 * later)
-    unseen = {round(25 * at): float(at) for at in when}
-    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, unseen=unseen)
+    unseen = {round(25 * at): Duplicate(float(at), -1) for at in when}
+    tracks = smooth(check_detections(table), (), radius=RADIUS, run=run, duplicates=unseen)
     before = tracks[tracks["t"].between(5.0, 5.79)]
     assert (np.abs(before["omega"]) < 3 * before["sd_omega"]).all()
     assert np.abs(tracks.loc[tracks["t"] > 6.41, "theta"] - 4.5).max() < 0.02

@@ -15,8 +15,8 @@ from curlshot.report.looks import (
 )
 from curlshot.tests.helpers.report.looking import camera, stone, table
 from curlshot.vision.detection.detection import Refusal
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import CameraError
+from curlshot.vision.video.frame import Frame
 
 
 @pytest.mark.parametrize("worst", [0, 17, 59])

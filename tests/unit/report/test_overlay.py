@@ -8,11 +8,13 @@ import cv2
 import numpy as np
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.report import overlay
 from curlshot.report.overlay import _scene, draw, write_overlay
 from curlshot.tests.helpers.report.clips import GREY, SIZE, camera, pictures
-from curlshot.vision.film.clip import Frame, open_clip
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.reader import open_video
 
 TIMES = [0.0, 0.04, 0.08, 0.2, 0.24, 0.25, 0.3, 0.5]
 
@@ -39,7 +41,7 @@ def read(path: Path) -> tuple[list[float], list[np.ndarray]]:
 
 
 def test_every_frame_keeps_its_time(tmp_path, shot):
-    clip = open_clip([uneven_clip(tmp_path / "in.mp4")])
+    clip = open_video([uneven_clip(tmp_path / "in.mp4")])
     told = []
     out = tmp_path / "out" / "overlay.mp4"
     write_overlay(clip, [], shot.tracks, (), out, progress=lambda *step: told.append(step))
@@ -51,7 +53,7 @@ def test_every_frame_keeps_its_time(tmp_path, shot):
 
 
 def test_odd_sizes_and_frames_without_a_camera(tmp_path, shot):
-    clip = open_clip(pictures(tmp_path), fps=30.0)
+    clip = open_video(pictures(tmp_path), VideoConfig(fps=30.0))
     out = tmp_path / "overlay.mp4"
     cameras = [camera(k, k1=-0.05) for k in range(6) if k != 2]
     write_overlay(clip, cameras, shot.tracks, shot.results.collisions, out)
@@ -67,7 +69,7 @@ def test_odd_sizes_and_frames_without_a_camera(tmp_path, shot):
 
 
 def test_lines_fall_where_the_camera_says(tmp_path, shot):
-    clip = open_clip(pictures(tmp_path, 1))
+    clip = open_video(pictures(tmp_path, 1))
     cam = camera(0, k1=-0.1)
     still = shot.tracks[shot.tracks["stone"] == "D"]
     out = tmp_path / "overlay.mp4"
@@ -86,7 +88,7 @@ def test_lines_fall_where_the_camera_says(tmp_path, shot):
 
 
 def test_no_rings_where_there_is_no_house(tmp_path, shot):
-    clip = open_clip(pictures(tmp_path, 1))
+    clip = open_video(pictures(tmp_path, 1))
     still = shot.tracks[shot.tracks["stone"] == "D"]
     out = tmp_path / "overlay.mp4"
     write_overlay(clip, [camera(0)], still, (), out, rings=None)
@@ -101,7 +103,7 @@ def test_nothing_is_left_of_a_failure(tmp_path, shot):
         size, fps, expected = SIZE, 25.0, 5
 
         def __iter__(self):
-            yield from open_clip(pictures(tmp_path, 2))
+            yield from open_video(pictures(tmp_path, 2))
             raise OSError("the disk went away")
 
     folder = tmp_path / "out"
@@ -113,14 +115,14 @@ def test_nothing_is_left_of_a_failure(tmp_path, shot):
 def test_points_behind_a_tilted_camera_are_not_drawn(tmp_path, shot):
     tilted = np.array([[60.0, 0, 160], [0, -60.0, 120], [0, -0.7, 1]])
     cam = Camera(0, 0.0, tilted, SIZE, k1=-0.3)
-    clip = open_clip(pictures(tmp_path, 1))
+    clip = open_video(pictures(tmp_path, 1))
     write_overlay(clip, [cam], shot.tracks, (), tmp_path / "overlay.mp4")
     times, _ = read(tmp_path / "overlay.mp4")
     assert times == [0.0]
 
 
 def test_the_first_picture_keeps_its_time(tmp_path, shot):
-    clip = open_clip([uneven_clip(tmp_path / "in.mp4")], frames=(3, 6))
+    clip = open_video([uneven_clip(tmp_path / "in.mp4")], VideoConfig(frames=(3, 6)))
     start = write_overlay(clip, [], shot.tracks, (), tmp_path / "overlay.mp4")
     assert start == pytest.approx(TIMES[3], abs=1e-4)
     times, _ = read(tmp_path / "overlay.mp4")
@@ -128,7 +130,7 @@ def test_the_first_picture_keeps_its_time(tmp_path, shot):
 
 
 def test_one_can_step_back_quickly(tmp_path, shot):
-    clip = open_clip(pictures(tmp_path, 60), fps=25.0)
+    clip = open_video(pictures(tmp_path, 60), VideoConfig(fps=25.0))
     write_overlay(clip, [], shot.tracks, (), tmp_path / "overlay.mp4")
     with av.open(str(tmp_path / "overlay.mp4")) as video:
         whole = [k for k, frame in enumerate(video.decode(video=0)) if frame.key_frame]
@@ -142,7 +144,7 @@ def test_colours_survive(tmp_path, shot):
     for k, colour in enumerate(patches):
         image[:, 80 * k : 80 * k + 80] = colour
     cv2.imwrite(str(path), image)
-    write_overlay(open_clip([path, path]), [], shot.tracks, (), tmp_path / "overlay.mp4")
+    write_overlay(open_video([path, path]), [], shot.tracks, (), tmp_path / "overlay.mp4")
     _, images = read(tmp_path / "overlay.mp4")
     for k, colour in enumerate(patches):
         seen = images[0][20:-20, 80 * k + 20 : 80 * k + 60].mean(axis=(0, 1))
@@ -150,7 +152,7 @@ def test_colours_survive(tmp_path, shot):
 
 
 def test_labels_show_the_spin_and_the_colour_of_the_team(tmp_path, shot):
-    clip = open_clip(pictures(tmp_path, 3), fps=25.0)
+    clip = open_video(pictures(tmp_path, 3), VideoConfig(fps=25.0))
     moving = shot.tracks[shot.tracks["frame"] < 3].assign(x=0.0, y=0.0, vx=1.0, vy=0.0)
     one = moving[moving["stone"] == "A"].assign(team="#00ff00", omega=1.5)
     shown = {}

@@ -8,11 +8,10 @@ import pytest
 
 from curlshot.config import Config
 from curlshot.data.errors import InputError
-from curlshot.data.progress import no_progress
 from curlshot.data.sheet import STONE
-from curlshot.vision.measure import check_size, disc_of, film
+from curlshot.vision.measure import check_size, disc_of, track_camera
 from curlshot.vision.optics.camera import Camera
-from curlshot.vision.optics.placed import nobody
+from curlshot.vision.video.reader import open_video
 
 
 def camera(pixels_a_metre: float) -> Camera:
@@ -56,12 +55,8 @@ def test_stones_are_looked_for_in_a_house_and_discs_elsewhere() -> None:
 def test_a_stick_gives_the_scale_and_no_house(tmp_path: Path) -> None:
     path = tmp_path / "a.png"
     cv2.imwrite(str(path), np.full((120, 160, 3), 90, np.uint8))
-    seen = film(
-        (path,),
-        Config().replace(stick=(20.0, 20.0, 120.0, 20.0, 0.5), radius=0.05),
-        no_progress,
-        nobody,
-    )
+    settings = Config().replace(stick=(20.0, 20.0, 120.0, 20.0, 0.5), radius=0.05)
+    seen = track_camera(open_video([path]), settings)
     assert seen.house is None
     ice = seen.cameras[0].ice(np.array([[20.0, 20.0], [120.0, 20.0]]))
     assert np.hypot(*np.diff(ice, axis=0)[0]) == pytest.approx(0.5)
@@ -73,7 +68,7 @@ def test_frames_of_which_none_can_be_read_are_refused(tmp_path: Path) -> None:
     files[1].write_bytes(b"no picture")
     settings = Config().replace(stick=(20.0, 20.0, 120.0, 20.0, 0.5), frames=(1, 1))
     with pytest.raises(InputError, match="none of the frames that are used can be read"):
-        film(files, settings, no_progress, nobody)
+        track_camera(open_video(files, settings.video), settings)
 
 
 @pytest.mark.parametrize(
@@ -86,4 +81,4 @@ def test_frames_of_which_none_can_be_read_are_refused(tmp_path: Path) -> None:
 )
 def test_what_is_no_clip_is_refused(names: list[str], said: str) -> None:
     with pytest.raises(InputError, match=said):
-        film(tuple(map(Path, names)), Config(), no_progress, nobody)
+        open_video([*map(Path, names)])

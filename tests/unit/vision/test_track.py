@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from curlshot.config import VideoConfig
 from curlshot.data.sheet import STONE, Stone
 from curlshot.data.tracks import DETECTION_COLUMNS, teams
 from curlshot.physics.filter.rate_filter import filtered, forward
@@ -29,7 +30,6 @@ from curlshot.vision.association.follow import Track
 from curlshot.vision.detection.roundness import edge_errors
 from curlshot.vision.detection.steady import lightness_of
 from curlshot.vision.detection.stones import plain_disc
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.spin.handle import HandleAngles
 from curlshot.vision.track import (
@@ -40,6 +40,7 @@ from curlshot.vision.track import (
     slants_of,
     track_stones,
 )
+from curlshot.vision.video.reader import open_video
 
 Array = NDArray[np.float64]
 DATA = Path(__file__).resolve().parents[3] / "data"
@@ -67,7 +68,7 @@ def sample_truth() -> tuple[pd.DataFrame, tuple[Camera, ...]]:
 
 def test_the_sample_is_followed_from_end_to_end() -> None:
     truth, cameras = sample_truth()
-    clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
+    clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
     stones = track_stones(clip, cameras)
     assert tuple(stones.detections.columns) == DETECTION_COLUMNS
     score = score_tracks(stones.detections.assign(seen=1), truth[truth["frame"] <= 80], visible=0.5)
@@ -97,7 +98,7 @@ def test_a_clip_without_stones_says_so(tmp_path: Path) -> None:
 
     path = tmp_path / "ice.png"
     cv2.imwrite(str(path), np.full((120, 160, 3), 220, np.uint8))
-    clip = open_clip([path])
+    clip = open_video([path])
     camera = Camera(
         0, 0.0, np.array([[20.0, 0, 80], [0, -20, 60], [0, 0, 1]]), (160, 120),
         position=np.array([0.0, 0, 10]),
@@ -115,7 +116,7 @@ def test_where_caps_of_one_lightness_are_all_that_is_told_the_others_are_warned_
 
     scene, path = scene_of([(0.3, 0.2, RED), (1.4, 0.6, RED)]), tmp_path / "ice.png"
     cv2.imwrite(str(path), without_colours(scene) if grey else render_still(scene, CAMERA))
-    stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),))
+    stones = track_stones(open_video([path]), (camera_of(CAMERA, scene),))
     assert len(stones.detections) == 2
     assert ["without colour" in text for text in stones.warnings] == [True] * warned
 
@@ -130,7 +131,7 @@ def test_caps_that_are_hardly_told_from_granite_lie_less_surely(tmp_path: Path) 
             tmp_path / "i.png",
         )
         cv2.imwrite(str(path), without_colours(scene))
-        stones = track_stones(open_clip([path]), (camera_of(CAMERA, scene),)).detections
+        stones = track_stones(open_video([path]), (camera_of(CAMERA, scene),)).detections
         assert len(stones) == 2
         shared.append(stones[["sd_place_x", "sd_place_y"]].to_numpy().max())
     assert max(shared[:2]) < 0.007
@@ -139,7 +140,7 @@ def test_caps_that_are_hardly_told_from_granite_lie_less_surely(tmp_path: Path) 
 
 def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
     truth, cameras = sample_truth()
-    clip = open_clip([DATA / "sample.mp4"], frames=(0, 80))
+    clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
     seen = track_stones(clip, cameras).detections
     stretches: list[Stretch] = []
 

@@ -17,7 +17,7 @@ from curlshot.vision.association.follower import Follower, StoneView
 from curlshot.vision.association.lead import Lead
 from curlshot.vision.detection.appearance import learn
 from curlshot.vision.detection.stones import FOLLOWING, search_picture
-from curlshot.vision.film.clip import Frame
+from curlshot.vision.video.frame import Frame
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import numpy as np
 from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.association.rows import AT_ONCE, Rows
 from curlshot.vision.detection.detection import Detection
-from curlshot.vision.film.shelf import Kept, Shelf
+from curlshot.vision.video.disk_cache import Cached, DiskCache
 
 
 def shown(rank: int) -> Detection:
@@ -18,7 +18,7 @@ def shown(rank: int) -> Detection:
         sd_x=rest[4], sd_y=rest[5], sd_place=(rest[6], rest[7]), visible=rest[8],
         bends=tuple(rest[9:15]), pixel=(rest[15], rest[16]), pixel_size=rest[17],
         light=(rest[18], rest[19]), measured=rank % 2 == 0, swept=rank % 3 == 0,
-        spectrum=Kept(np.ones(3, np.complex64)) if rank == 1 else None,
+        spectrum=Cached(np.ones(3, np.complex64)) if rank == 1 else None,
     )  # fmt: skip
 
 
@@ -51,16 +51,16 @@ def test_rows_take_a_few_hundred_bytes_each() -> None:
 
 def test_rows_that_are_put_aside_are_as_they_were_and_take_next_to_nothing() -> None:
     seen = [shown(rank) for rank in range(3)]
-    shelf, held = Shelf(), [Rows(seen * 100) for _ in range(30)]
+    cache, held = DiskCache(), [Rows(seen * 100) for _ in range(30)]
     for each in seen:
         if each.spectrum is not None:
-            each.spectrum.put_aside(shelf)
+            each.spectrum.put_aside(cache)
     gc.collect()
     tracemalloc.start()
     begin = tracemalloc.get_traced_memory()[0]
-    more = [Kept(Rows(seen * 100)) for _ in range(30)]
+    more = [Cached(Rows(seen * 100)) for _ in range(30)]
     for rows in more:
-        rows.put_aside(shelf)
+        rows.put_aside(cache)
     gc.collect()
     taken = tracemalloc.get_traced_memory()[0] - begin
     tracemalloc.stop()

@@ -23,8 +23,8 @@ from curlshot.vision.detection.placing import placed_by
 from curlshot.vision.detection.stones import (
     plain_disc,
 )
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.cameras import Cameras
+from curlshot.vision.video.frame import Frame
 
 LATE = (-0.2, -0.5)
 PALE = (210, 150, 70)

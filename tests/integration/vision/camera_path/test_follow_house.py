@@ -35,12 +35,13 @@ from curlshot.vision.camera_path.follow_house import (
     _most_beside,
     follow_house,
 )
-from curlshot.vision.film.clip import Frame, open_clip
-from curlshot.vision.film.picture import image_of
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.projection import apply_homography
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.picture import image_of
+from curlshot.vision.video.reader import open_video
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 
@@ -56,7 +57,7 @@ def follow(
     path: CameraPath, *, duration: float, height: float | None = None, **changes: object
 ) -> tuple[HouseTrack, int]:
     clip, truth = cached_clip(replace(SCENE, **changes), path, duration=duration)
-    return follow_house(open_clip([clip]), height=height), len(truth.camera)
+    return follow_house(open_video([clip]), height=height), len(truth.camera)
 
 
 def worst(track: HouseTrack, path: CameraPath) -> float:
@@ -140,7 +141,7 @@ def test_after_a_cut_back_the_same_camera_goes_on() -> None:
 def test_frames_that_the_clip_does_not_give_are_not_said_to_show_no_house() -> None:
     clip, truth = cached_clip(SCENE, still_camera(target=(0.1, 0.6), px_per_m=100), duration=0.6)
     follower = HouseFollower((1280, 720))
-    for frame in open_clip([clip]):
+    for frame in open_video([clip]):
         if frame.index not in (4, 5):
             follower.look(frame)
     track = follower.finish()
@@ -215,7 +216,7 @@ def test_no_camera_is_carried_onto_what_is_blended_in(tmp_path: Path, backwards:
     for k, share in enumerate(shown.tolist()):
         paths.append(tmp_path / f"{k:02d}.png")
         cv2.imwrite(str(paths[-1]), cv2.addWeighted(other, share, house, 1 - share, 0))
-    track = follow_house(open_clip(paths))
+    track = follow_house(open_video(paths))
     frames = [camera.frame for camera in track.cameras]
     assert set(np.flatnonzero(shown == 0).tolist()) <= set(frames)
     assert shown[frames].max() < 0.8
@@ -423,7 +424,7 @@ def test_one_pass_gives_each_frame_once_and_in_order() -> None:
     keys = (Key(0.0, 0, 5.2, 110), Key(0.3, 0, 5.1, 110), Key(1.6, 0, 1.0, 105))
     path = CameraPath((1280, 720), (-0.1, 0.1, 8.5), keys, 0.2)
     file, truth = cached_clip(SCENE, path, duration=1.6)
-    clip = open_clip([file])
+    clip = open_video([file])
     follower = HouseFollower(clip.size)
     placed = [(f, c) for frame in clip for f, c in follower.look(frame)]
     placed += follower.catch_up()
@@ -440,7 +441,7 @@ def test_one_pass_gives_each_frame_once_and_in_order() -> None:
 @pytest.mark.parametrize("after", [0, PATIENCE + 2])
 def test_frames_too_few_to_fit_what_they_share_are_given_as_well(after: int) -> None:
     file, _ = cached_clip(SCENE, broadcast_camera(start=0.0, end=1.0), duration=1.2)
-    clip = open_clip([file])
+    clip = open_video([file])
     frames = list(islice(clip, 4))
     bare = np.full_like(image_of(frames[0].picture), 230)
     follower = HouseFollower(clip.size)
@@ -457,7 +458,7 @@ def test_a_single_picture_is_a_clip(tmp_path: Path) -> None:
     path = still_camera(target=(0.1, 0.4), px_per_m=105)
     picture = tmp_path / "still.png"
     cv2.imwrite(str(picture), render_still(SCENE, path, 1.0))
-    track = follow_house(open_clip([picture]))
+    track = follow_house(open_video([picture]))
     assert len(track.cameras) == 1
     assert rms(track.cameras[0], path.at(1.0).project(np.c_[RINGS, np.zeros(len(RINGS))])) < 0.003
 
@@ -470,7 +471,7 @@ def test_a_clip_without_a_house_says_what_to_do() -> None:
 def test_real_ice_under_a_known_camera(shared: Path) -> None:
     base = shared / "clips/semireal_pyeongchang_two_hits"
     truth = json.loads(base.with_suffix(".truth.json").read_text())
-    track = follow_house(open_clip([base.with_suffix(".mp4")]))
+    track = follow_house(open_video([base.with_suffix(".mp4")]))
     assert len(track.cameras) == len(truth["frames"])
     errors = []
     for camera in track.cameras:

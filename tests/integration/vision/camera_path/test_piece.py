@@ -23,7 +23,6 @@ from curlshot.tests.helpers.vision.filmed import (
 from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.camera_path.edge_tracker import LONGEST_STRIDE, EdgeTracker
 from curlshot.vision.camera_path.piece import REFINE_AT, Piece
-from curlshot.vision.film.clip import Frame, open_clip
 from curlshot.vision.optics.paint import CIRCLES, FIXED, joined
 from curlshot.vision.optics.pose import aim, camera
 from curlshot.vision.optics.predict import MEMORY
@@ -31,6 +30,8 @@ from curlshot.vision.optics.rig import OVERHEAD, R8, start_rig
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.outline import PaintEdge
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.reader import open_video
 
 SIZE = (640, 360)
 POSITION = (0.0, 0.0, 8.5)
@@ -155,7 +156,7 @@ def test_a_lens_that_bends_with_the_zoom_is_learned_on_the_way() -> None:
         Key(1.2, 0.0, 0.1, 185, k1=0.06),
     )
     file, _ = cached_clip(scene, CameraPath((1280, 720), (-0.1, 0.1, 8.5), keys), duration=1.2)
-    frames = list(open_clip([file]))
+    frames = list(open_video([file]))
     house = find_house(frames[0].image)
     assert house is not None
     piece = followed(house, frames)

@@ -17,8 +17,9 @@ from curlshot.vision.camera_path.replay import (
     is_replay,
     shows_again,
 )
-from curlshot.vision.film.clip import Frame, open_clip
-from curlshot.vision.film.shelf import Kept
+from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.reader import open_video
 
 RATE = 25
 
@@ -27,7 +28,7 @@ RATE = 25
 def live() -> list[np.ndarray]:
     """Pictures of a shot that runs through the house."""
     file, _ = cached_clip(sample_scene(), broadcast_camera(), duration=3.0)
-    return [frame.image for frame in open_clip([file])]
+    return [frame.image for frame in open_video([file])]
 
 
 def frames(parts: Sequence[Sequence[np.ndarray]]) -> list[int]:
@@ -51,9 +52,9 @@ def test_only_what_shows_the_same_ice_is_compared() -> None:
     house = np.random.default_rng(4).uniform(0, 255, (CELLS, CELLS))
     low, high = house.copy(), house + 6.0
     low[: CELLS * 3 // 4], high[CELLS // 2 :] = np.nan, np.nan
-    first, last = Glimpse(0.0, Kept(high)), Glimpse(2.0, Kept(low))
-    assert not is_replay(Glimpse(2.2, Kept(high + 1.0)), [first, last])
-    assert is_replay(Glimpse(2.2, Kept(high + 1.0)), [first, Glimpse(2.0, Kept(house))])
+    first, last = Glimpse(0.0, Cached(high)), Glimpse(2.0, Cached(low))
+    assert not is_replay(Glimpse(2.2, Cached(high + 1.0)), [first, last])
+    assert is_replay(Glimpse(2.2, Cached(high + 1.0)), [first, Glimpse(2.0, Cached(house))])
 
 
 def house(*things: tuple[int, int], t: float = 0.0) -> Glimpse:
@@ -61,7 +62,7 @@ def house(*things: tuple[int, int], t: float = 0.0) -> Glimpse:
     grey = np.full((CELLS, CELLS), 200.0)
     for row, column in things:
         grey[row : row + 3, column : column + 3] = 60.0
-    return Glimpse(t, Kept(grey))
+    return Glimpse(t, Cached(grey))
 
 
 A, B, C, D = (5, 8), (30, 12), (14, 40), (40, 33)
@@ -96,7 +97,7 @@ def test_what_is_shown_again_are_things_not_ice_that_was_covered_for_long() -> N
         grey = paint.copy()
         for row, column in things:
             grey[row : row + 5, column : column + 5] = 60.0 if paint[row, column] > 100 else 200.0
-        return Glimpse(0.0, Kept(grey))
+        return Glimpse(0.0, Cached(grey))
 
     long_before, people = [seen(), seen(C)], [seen(A, B, (20, 28))] * 5
     assert not shows_again(seen(), [*long_before, *people], long_before)
@@ -111,7 +112,7 @@ def test_things_are_known_where_they_are() -> None:
         grey = np.full((CELLS, CELLS), 200.0)
         for row, column in things:
             grey[row : row + 2, column : column + 2] = 60.0
-        return Glimpse(0.0, Kept(grey))
+        return Glimpse(0.0, Cached(grey))
 
     assert shows_again(seen(*small), [seen(), seen(), seen()], [seen(*small)])
 

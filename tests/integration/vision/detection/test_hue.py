@@ -51,7 +51,7 @@ def measures(picture: np.ndarray, places: np.ndarray) -> Measures:
 def test_caps_on_paint_of_their_hue_are_told_where_coding_tinges_their_granite() -> None:
     picture = coded(render_still(SCENE, CAMERA), BLUR)
     told = measures(picture, ON_PAINT)
-    assert told.evidence.min() > SEARCH.least_evidence
+    assert told.evidence.min() > SEARCH.min_evidence
     assert np.hypot(*(told.centre - ON_PAINT).T).max() < 0.01
 
 

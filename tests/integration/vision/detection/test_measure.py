@@ -101,7 +101,9 @@ def test_hues_coded_in_blocks_hide_no_stone(block: int) -> None:
     coded = [coarsely_coloured(picture, block, aside) for aside in range(0, block, 2)]
     seen = measure_discs([Look(each, VIEW, PLACES) for each in coded], learned, STONE, FOLLOWED)
     assert seen.outline[:, 0].max() > 1.06
-    assert seen.evidence.min() < FOLLOWING.least_again < (seen.evidence + seen.excused).min()
+    assert (
+        seen.evidence.min() < FOLLOWING.min_repeated_evidence < (seen.evidence + seen.excused).min()
+    )
 
 
 def test_steeply_aslant_coarse_hues_draw_no_cap_on_paint_towards_the_camera() -> None:

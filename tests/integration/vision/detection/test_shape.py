@@ -24,7 +24,7 @@ from curlshot.vision.detection.rays import Look
 from curlshot.vision.detection.shape import CAPS, NO_BALLOT, elected
 from curlshot.vision.detection.stones import SEARCH
 from curlshot.vision.detection.strangers import strangers
-from curlshot.vision.film.clip import Frame
+from curlshot.vision.video.frame import Frame
 
 PLACES = [(0.3, 0.2), (-0.8, 1.0), (0.9, -0.6), (-0.2, -1.4), (1.3, 1.2)]
 

@@ -25,8 +25,8 @@ from curlshot.tests.helpers.vision.stones import (
 )
 from curlshot.vision.detection.appearance import BY_SHAPE, convincing, learn
 from curlshot.vision.detection.stones import FOLLOWING, SEARCH, Search, search_picture
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera, CameraError
+from curlshot.vision.video.reader import open_video
 
 
 @pytest.mark.parametrize("paint", ["teal-red", "navy-orange", "red-white", "grey-red"])
@@ -151,7 +151,7 @@ def test_real_stills(shared: Path) -> None:
     errors: list[float] = []
     false = 0
     for still in stills[::3]:
-        picture = next(iter(open_clip([shared / "frames" / "images" / still["file"]])))
+        picture = next(iter(open_video([shared / "frames" / "images" / still["file"]])))
         size = (still["size"][0], still["size"][1])
         place = np.array(still["camera"]["xyz"])
         matrix = np.array(still["homography"])

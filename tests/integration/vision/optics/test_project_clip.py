@@ -8,13 +8,14 @@ import pandas as pd
 import pytest
 
 from curlshot.cli.main import main
+from curlshot.config import VideoConfig
 from curlshot.data.project import read_project
 from curlshot.data.tracks import check_detections
 from curlshot.data.trk import Coordinates
 from curlshot.data.trk_write import View, project_xml, write_trz
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.camera import Camera
-from curlshot.vision.optics.project_clip import open_project_clip, project_cameras
+from curlshot.vision.optics.project_clip import project_cameras
+from curlshot.vision.video.reader import open_video
 
 
 def test_the_clip_or_the_marks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -62,7 +63,7 @@ def test_the_clip_or_the_marks(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 def test_the_clips_of_users_are_read(shared: Path) -> None:
     for path in sorted((shared / "tracker" / "real").glob("*.trz")):
-        clip = open_project_clip(path)
+        clip = open_video([path])
         marked = read_project(path)
         seen = {frame.index: frame.t for frame in clip}
         assert len(seen) == clip.expected == marked.timing.count
@@ -76,6 +77,6 @@ def test_the_clips_of_users_are_read(shared: Path) -> None:
         np.testing.assert_allclose(
             camera.ice(marked.masses[0].marks[0] - 0.5), place[0], rtol=1e-9, atol=1e-12
         )
-    sample = open_project_clip(shared / "tracker" / "samples" / "sample.trz")
-    whole = open_clip(sample.whole.files, fps=30)
+    sample = open_video([shared / "tracker" / "samples" / "sample.trz"])
+    whole = open_video(sample.source.whole.files, VideoConfig(fps=30))
     assert len(list(sample)) == len(list(whole)) == 12

@@ -10,14 +10,14 @@ from curlshot.tests.helpers.vision.steep_handles import (
     TRUE,
     turning,
 )
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.angles import angles_in_parts
+from curlshot.vision.video.disk_cache import Cached
 
 
 @pytest.mark.parametrize("turn", [0.0, 1.0, 2.5])
 def test_what_is_left_is_by_the_same_axes_in_all_parts_of_a_long_track(turn: float) -> None:
     """One number says for all pictures of a stone how much steeper it is along its handle."""
-    shown = [*map(Kept, turning(TRUE + turn, SLANTS, 0.35))]
+    shown = [*map(Cached, turning(TRUE + turn, SLANTS, 0.35))]
     sd = np.full(len(TIMES), 0.0005)
     whole, parts = (angles_in_parts(TIMES, shown, RADII, sd, n, SLANTS).rise for n in (500, 35))
     for first, last in ((0, 34), (35, 69)):

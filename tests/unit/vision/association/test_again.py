@@ -11,7 +11,7 @@ from curlshot.tests.helpers.vision.stones import CAMERA, RED, scene_of
 from curlshot.vision.association.again import drifts, measure_again
 from curlshot.vision.association.follower import StoneView
 from curlshot.vision.detection.stones import FOLLOWING, search_picture
-from curlshot.vision.film.clip import Frame
+from curlshot.vision.video.frame import Frame
 
 
 def test_stones_whose_motion_shows_only_later_are_measured_again() -> None:

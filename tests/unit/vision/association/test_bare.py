@@ -18,7 +18,7 @@ from curlshot.vision.association.follow import Track
 from curlshot.vision.detection.appearance import BY_SHAPE, Colour
 from curlshot.vision.detection.relief import contrast
 from curlshot.vision.detection.stones import plain_disc
-from curlshot.vision.film.shelf import Kept
+from curlshot.vision.video.disk_cache import Cached
 
 TEAMS = replace(BY_SHAPE, caps=(Colour(RED, np.eye(3)), Colour(YELLOW, np.eye(3))))
 
@@ -31,7 +31,7 @@ def track_of(
 ) -> Track:
     track = Track()
     for frame, spectrum in enumerate(caps):
-        shown = None if spectrum is None else Kept(spectrum)
+        shown = None if spectrum is None else Cached(spectrum)
         seen = detection((1.0, step * frame), colour)._replace(spectrum=shown, pixel_size=pixel)
         track.add(frame, frame / 25, seen, STONE.radius)
     return track

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from curlshot.synthetic.clip import render_still
@@ -13,14 +15,14 @@ from curlshot.tests.helpers.vision.stones import (
 from curlshot.vision.association.expected import look_beside, look_on_course
 from curlshot.vision.detection.appearance import learn
 from curlshot.vision.detection.rays import Look
-from curlshot.vision.detection.stones import Search, search_picture
+from curlshot.vision.detection.stones import SEARCH, search_picture
 
 
 def test_a_stone_seen_a_moment_ago_needs_less_evidence() -> None:
     scene = scene_of([(0.2, 0.9, RED), (-0.4, 0.2, YELLOW)])
     image, camera = np.asarray(render_still(scene, CAMERA), np.uint8), camera_of(CAMERA, scene)
     known = search_picture(image, camera).stones
-    strict = Search(least_evidence=1 + max(stone.score for stone in known))
+    strict = replace(SEARCH, min_evidence=1 + max(stone.score for stone in known))
     assert search_picture(image, camera, search=strict).stones == ()
     looks = [Look(image, camera, np.array([(stone.x, stone.y) for stone in known]))]
     assert None not in look_on_course(looks, learn(known), search=strict)

@@ -5,7 +5,7 @@ import pytest
 
 from curlshot.tests.helpers.vision.tracks import detection
 from curlshot.vision.association.lead import DECELERATION, MEMORY, STEADY, Lead
-from curlshot.vision.film.shelf import Kept
+from curlshot.vision.video.disk_cache import Cached
 
 NEAR, STILL = 0.02, 0.004
 
@@ -89,10 +89,10 @@ def test_a_cap_that_turns_on_the_spot_does_not_rest() -> None:
         return (cap * np.exp(-1j * np.arange(1, 18) * angle)[:, None, None]).astype(np.complex64)
 
     for spin, rests in ((0.0, True), (0.5, False)):
-        lead = Lead.to(detection((0.3, 0.2))._replace(spectrum=Kept(facing(0.0))), 0.0)
+        lead = Lead.to(detection((0.3, 0.2))._replace(spectrum=Cached(facing(0.0))), 0.0)
         for count in range(1, STEADY + 2):
             t = count / 25
-            seen = detection((0.3, 0.2))._replace(spectrum=Kept(facing(spin * t)))
+            seen = detection((0.3, 0.2))._replace(spectrum=Cached(facing(spin * t)))
             lead = lead.on(seen, t, NEAR, STILL)
         assert lead.rests is rests
 

@@ -14,7 +14,7 @@ from curlshot.tests.helpers.vision.stones import (
 )
 from curlshot.vision.association.still import Portrait, portraits, unchanged
 from curlshot.vision.detection.stones import search_picture
-from curlshot.vision.film.clip import Image
+from curlshot.vision.video.picture import Image
 
 PLACES = [(0.3, 0.2, RED), (-0.8, 1.0, YELLOW), (0.9, -0.6, RED)]
 VIEW = camera_of(CAMERA, scene_of(PLACES))

@@ -13,7 +13,7 @@ from curlshot.tests.helpers.vision.watch import AT_REST, lasting, picture
 from curlshot.vision.association.follower import StoneView
 from curlshot.vision.association.lead import Lead
 from curlshot.vision.association.watch import Watch, pictures_kept
-from curlshot.vision.film.clip import Frame
+from curlshot.vision.video.frame import Frame
 
 
 @pytest.mark.parametrize(

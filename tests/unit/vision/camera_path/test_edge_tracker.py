@@ -8,11 +8,11 @@ from curlshot.synthetic import PAINTS, Key, Paint, render_still, sample_scene
 from curlshot.synthetic.camera import CameraPath
 from curlshot.tests.helpers.vision.filmed import SIZE, filmed, smeared_evidence, tracker
 from curlshot.vision.camera_path.edge_tracker import LONGEST_STRIDE, SHARPER, EdgeTracker, put_right
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.paint import CENTRE_LINE, CIRCLES, EIGHT, FOUR, HOG_LINE, TWELVE
 from curlshot.vision.optics.pose import View, project
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.outline import PaintEdge
+from curlshot.vision.video.frame import Frame
 
 ANGLE = np.arange(16) * np.pi / 8
 

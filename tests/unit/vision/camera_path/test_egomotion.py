@@ -6,8 +6,8 @@ import pytest
 
 from curlshot.synthetic import render_still, sample_scene, still_camera
 from curlshot.vision.camera_path.egomotion import foretold
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.pose import DOWN, View, rotation_vector
+from curlshot.vision.video.picture import Image
 
 PATH = still_camera()
 SIZE = PATH.size

@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.data.errors import InputError
 from curlshot.synthetic import (
     PAINTS,
@@ -20,8 +21,8 @@ from curlshot.synthetic import (
 )
 from curlshot.tests.helpers.vision.places import RINGS
 from curlshot.vision.camera_path.given import GivenHouse, fit_given, follow_given, hypotheses
-from curlshot.vision.film.clip import Clip, open_clip
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.reader import Video, open_video
 
 SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
 SMALL = (640, 360)
@@ -42,7 +43,7 @@ def off(camera: Camera, path: CameraPath, t: float) -> np.ndarray:
     return np.asarray(camera.ice(path.at(t).project(np.c_[RINGS, np.zeros(len(RINGS))])) - RINGS)
 
 
-def textured(folder: Path, shifts: tuple[float, ...]) -> Clip:
+def textured(folder: Path, shifts: tuple[float, ...]) -> Video:
     """Pictures of the same blots, each moved to the right, without any ring."""
     rng = np.random.default_rng(3)
     wide = rng.integers(0, 256, (SMALL[1] // 8, SMALL[0] // 8 + 10), np.uint8)
@@ -50,7 +51,7 @@ def textured(folder: Path, shifts: tuple[float, ...]) -> Clip:
     for k, shift in enumerate(shifts):
         moved = cv2.warpAffine(grey, np.array([[1.0, 0.0, shift], [0.0, 1.0, 0.0]]), SMALL)
         cv2.imwrite(str(folder / f"{k}.png"), cv2.merge([moved] * 3))
-    return open_clip([folder / f"{k}.png" for k in range(len(shifts))], 25.0)
+    return open_video([folder / f"{k}.png" for k in range(len(shifts))], VideoConfig(fps=25.0))
 
 
 @pytest.mark.parametrize(
@@ -85,7 +86,7 @@ def test_of_two_houses_the_one_pointed_at_is_taken() -> None:
 def test_it_is_followed_from_its_frame_both_ways() -> None:
     path = broadcast_camera(end=1.2, shake=1.5, k1=(-0.06, -0.02), roll=(0.03, -0.03))
     file, truth = cached_clip(SCENE, path, duration=1.2)
-    clip = open_clip([file])
+    clip = open_video([file])
     t = next(f.t for f in clip if f.index == 12)
     track = follow_given(clip, pointed(path, t, np.random.default_rng(1), 12))
     assert [c.frame for c in track.cameras] == list(range(len(truth.camera)))
@@ -160,6 +161,8 @@ def test_a_frame_that_is_not_there_is_refused(tmp_path: Path) -> None:
 def test_a_clip_of_which_nothing_can_be_read_says_so(tmp_path: Path) -> None:
     textured(tmp_path, (0.0,))
     (tmp_path / "1.png").write_bytes(b"no picture")
-    clip = open_clip([tmp_path / "0.png", tmp_path / "1.png"], 25.0, (1, 1))
+    clip = open_video(
+        [tmp_path / "0.png", tmp_path / "1.png"], VideoConfig(fps=25.0, frames=(1, 1))
+    )
     with pytest.raises(InputError, match="none of the frames that are used can be read"):
         follow_given(clip, GivenHouse.of((320, 180, 420, 180, 320, 80)))

@@ -10,8 +10,8 @@ from curlshot.vision.camera_path.edge_tracker import EdgeTracker
 from curlshot.vision.camera_path.ice_tracker import IceTracker
 from curlshot.vision.camera_path.joint import Seen
 from curlshot.vision.camera_path.landmarks import Landmarks
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.sheet.house_fit import HouseFit
+from curlshot.vision.video.frame import Frame
 
 
 def started() -> tuple[list[Frame], HouseFit, EdgeTracker, Seen]:

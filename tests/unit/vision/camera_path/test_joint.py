@@ -13,8 +13,6 @@ from curlshot.tests.helpers.vision.clip_marks import SIZE, seen_marks
 from curlshot.vision.camera_path.follow_house import follow_house
 from curlshot.vision.camera_path.joint import TOGETHER, Seen, fit_clip
 from curlshot.vision.camera_path.keyframe import Keyframe
-from curlshot.vision.film.clip import open_clip
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.paint import (
     FIXED,
@@ -28,6 +26,8 @@ from curlshot.vision.optics.paint import (
 from curlshot.vision.optics.pose import View
 from curlshot.vision.optics.resection import solve_view
 from curlshot.vision.optics.rig import OVERHEAD, start_rig
+from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.reader import open_video
 
 SAMPLE = pipeline.sample_clip()
 HOUSE = np.array([(x, y) for x in np.linspace(-1.5, 1.5, 5) for y in np.linspace(-1.5, 1.5, 5)])
@@ -47,7 +47,7 @@ def clip(
     for k in range(count):
         true = true_view(0.1, 950.0 + zoom * k)
         start = View(np.array([-0.1, 0.0, 0.0, np.log(true.focal)]))
-        found.append(Seen(k, k / 25, start, Kept(seen_marks(true, rng, kinds, noise)), True))
+        found.append(Seen(k, k / 25, start, Cached(seen_marks(true, rng, kinds, noise)), True))
     return found
 
 
@@ -73,7 +73,7 @@ def test_a_wide_lens_hangs_where_clubs_have_theirs() -> None:
     for seed in range(3):
         rng = np.random.default_rng(seed)
         marks = joined([seen_marks(true, rng, 5, 0.3), side_marks(true, rng)])
-        seen = [Seen(0, 0.0, View(np.array([0.0, 0.0, 0.0, np.log(432.0)])), Kept(marks), True)]
+        seen = [Seen(0, 0.0, View(np.array([0.0, 0.0, 0.0, np.log(432.0)])), Cached(marks), True)]
         (camera,) = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, size).cameras
         assert camera.position is not None and abs(camera.position[2] - 4.6) < 1.5
         assert camera.k1 == pytest.approx(-0.24, abs=0.01)
@@ -99,7 +99,7 @@ def test_noise_that_stays_with_the_picture_is_not_taken_for_new_in_every_frame()
     true, off, scaled = true_view(0.1, 1000.0), [], []
     start = View(np.array([-0.1, 0.0, 0.0, np.log(true.focal)]))
     for seed in range(12):
-        marks = Kept(seen_marks(true, np.random.default_rng(seed), 5, 0.1))
+        marks = Cached(seen_marks(true, np.random.default_rng(seed), 5, 0.1))
         seen = [Seen(k, k / 25, start, marks, True) for k in range(12)]
         camera = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[0]
         off.append(camera.ice(true.project(np.c_[HOUSE, np.zeros(len(HOUSE))])) - HOUSE)
@@ -116,7 +116,8 @@ def test_less_seen_is_known_less_and_no_error() -> None:
     circle = fit_clip(clip(rng, 1), start_rig(OVERHEAD), OVERHEAD, SIZE)
     one = circle.cameras[0]
     few = [
-        Seen(s.index, s.t, s.view, Kept(s.marks.get().pick(np.arange(5))), True) for s in clip(rng)
+        Seen(s.index, s.t, s.view, Cached(s.marks.get().pick(np.arange(5))), True)
+        for s in clip(rng)
     ]
     least = fit_clip(few, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[0]
     sds = [float(np.sqrt(np.trace(c.place_cov((1.0, 1.0))))) for c in (whole, one, least)]
@@ -145,7 +146,7 @@ def test_a_line_that_no_frame_with_rings_shows_moves_no_view() -> None:
     rings = seen_marks(true, np.random.default_rng(8), 5, 0.1)
     found = []
     for marks in (rings, joined([rings, hog])):
-        carried = Seen(8, 8 / 25, seen[-1].view, Kept(marks), False)
+        carried = Seen(8, 8 / 25, seen[-1].view, Cached(marks), False)
         track = fit_clip([*seen, carried], start_rig(OVERHEAD), OVERHEAD, SIZE)
         found.append(track.cameras[-1].ice(true.project(np.c_[HOUSE, np.zeros(len(HOUSE))])))
     np.testing.assert_allclose(found[1], found[0], atol=1e-9)
@@ -173,7 +174,7 @@ def test_a_picture_cropped_off_its_middle_is_told_and_less_trusted(
     seen, aside = [], np.array([columns / 2, 0.0])
     for s in clip(np.random.default_rng(7), noise=0.1):
         marks = s.marks.get()  # so many columns are missing at the right: the middle moves
-        seen.append(replace(s, marks=Kept(replace(marks, pixel=marks.pixel + aside))))
+        seen.append(replace(s, marks=Cached(replace(marks, pixel=marks.pixel + aside))))
     track = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE)
     assert any("cropped" in w for w in track.warnings) == told
     camera = track.cameras[0]
@@ -192,7 +193,7 @@ def larger(seen: Seen, times: float) -> Seen:
     middle = (np.array(SIZE) - 1) / 2
     pixel = times * (marks.pixel - middle) + (times * np.array(SIZE) - 1) / 2
     grown = replace(marks, pixel=pixel, sd=times * marks.sd)
-    return replace(seen, view=view, marks=Kept(grown))
+    return replace(seen, view=view, marks=Cached(grown))
 
 
 def test_quality_is_the_same_in_a_larger_picture() -> None:
@@ -214,7 +215,7 @@ def test_a_lens_that_bends_all_pictures_alike_is_told_though_it_passes_for_paint
     for one in clip(np.random.default_rng(8), noise=0.1, zoom=1.0):
         marks = one.marks.get()
         waves = bent * np.sqrt(2) * np.sin(marks.pixel[:, ::-1] / [40.0, 55.0])
-        seen.append(replace(one, marks=Kept(replace(marks, pixel=marks.pixel + waves))))
+        seen.append(replace(one, marks=Cached(replace(marks, pixel=marks.pixel + waves))))
     track = fit_clip(seen, start_rig(OVERHEAD), OVERHEAD, SIZE)
     assert track.cameras[0].rms_px < 0.4
     assert ("explains little" in " ".join(track.warnings)) == told
@@ -247,7 +248,7 @@ def test_fixed_points_may_join_and_are_no_line(kinds: int, lined: bool) -> None:
     key = Keyframe(
         0, first.view, start_rig(OVERHEAD), np.zeros((9, 16), np.uint8), none, none, 0.003
     )
-    frames.append(Seen(8, 8 / 25, first.view, Kept(fixed), False, key))
+    frames.append(Seen(8, 8 / 25, first.view, Cached(fixed), False, key))
     track = fit_clip(frames, start_rig(OVERHEAD), OVERHEAD, SIZE)
     assert any("neither centre line" in text for text in track.warnings) is not lined
     cameras = track.cameras
@@ -270,7 +271,7 @@ def true_camera(index: int) -> Camera:
 def test_stated_error_covers_the_true_one() -> None:
     ratios, sizes = [], []
     house = np.array([(x, y) for x in np.linspace(-1.8, 1.8, 7) for y in np.linspace(-1.8, 3, 9)])
-    for camera in follow_house(open_clip([SAMPLE])).cameras[::20]:
+    for camera in follow_house(open_video([SAMPLE])).cameras[::20]:
         pixels = true_camera(camera.frame).project(house)
         shown = ((pixels > 0) & (pixels < camera.size)).all(-1)
         off = (camera.ice(pixels) - house)[shown]

@@ -18,14 +18,14 @@ from curlshot.vision.camera_path.shutter import (
     more_light,
 )
 from curlshot.vision.camera_path.smear import SHARP
-from curlshot.vision.film.clip import Frame
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.optics.paint import EIGHT, TWELVE
 from curlshot.vision.optics.pose import View, camera
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.mixing import half_light
 from curlshot.vision.sheet.outline import PaintEdge
+from curlshot.vision.video.disk_cache import Cached
+from curlshot.vision.video.frame import Frame
 
 SIZE = (960, 540)
 HEIGHT, PX_PER_M = 9.0, 100.0
@@ -110,7 +110,7 @@ def test_edges_measured_with_another_share_are_moved_to_where_they_lie(
 
 
 def test_a_house_that_comes_into_view_in_a_pan_is_fitted_where_it_is_sharp() -> None:
-    marks = Kept(before().evidence.marks)
+    marks = Cached(before().evidence.marks)
     seen = [
         Seen(k, k / 25, before().view, marks, True, smeared=8.0 if k < 6 else 0.5)
         for k in range(16)

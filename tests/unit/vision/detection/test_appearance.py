@@ -21,7 +21,7 @@ from curlshot.vision.detection.appearance import (
     membership,
 )
 from curlshot.vision.detection.detection import Detection
-from curlshot.vision.film.shelf import Kept
+from curlshot.vision.video.disk_cache import Cached
 
 RED, YELLOW, BLUE, GREY = (30, 24, 150), (20, 190, 220), (170, 80, 30), (105, 105, 100)
 
@@ -98,7 +98,7 @@ def test_of_more_than_two_colours_the_rarest_is_left_out_and_so_is_one_seen_by_c
 
 
 def test_of_more_than_two_colours_paint_is_left_out_that_shows_no_handle() -> None:
-    flat, handled = (Kept(picture_of(bar(height), 1.0)) for height in (0.0, 30.0))
+    flat, handled = (Cached(picture_of(bar(height), 1.0)) for height in (0.0, 30.0))
     stones = [seen(RED)._replace(spectrum=handled)] * 9 + [seen(YELLOW)._replace(spectrum=handled)]
     look = learn([*stones, *[seen(BLUE, 3.0)._replace(spectrum=flat)] * 2])
     assert look is not None

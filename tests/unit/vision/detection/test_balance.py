@@ -24,9 +24,9 @@ from curlshot.vision.detection.balance import (
     brightening,
     tones,
 )
-from curlshot.vision.film.lab import lab_of
-from curlshot.vision.film.picture import Image, image_of, toned
 from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.colour import lab_of
+from curlshot.vision.video.picture import Image, image_of, toned
 
 SCENE = scene_of([(0.3, 0.2, RED), (-0.8, 1.0, YELLOW)])
 

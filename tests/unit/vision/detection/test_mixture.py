@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from curlshot.data.sheet import STONE
 from curlshot.vision.detection.mixture import GAMMA, CapRays, by_light
 from curlshot.vision.detection.rays import Rays, directions
-from curlshot.vision.film.lab import lab_of
+from curlshot.vision.video.colour import lab_of
 
 Array = NDArray[np.float64]
 

@@ -13,9 +13,9 @@ from curlshot.vision.detection.patch import (
 )
 from curlshot.vision.detection.rays import Look, cameras_of
 from curlshot.vision.detection.stones import plain_disc
-from curlshot.vision.film.picture import colours_at
 from curlshot.vision.optics.pose import View, camera
 from curlshot.vision.optics.rig import OVERHEAD, start_rig
+from curlshot.vision.video.picture import colours_at
 
 HEIGHT, FOCAL = 8.0, 1200.0
 RIG = start_rig(OVERHEAD, (0.0, 0.0, HEIGHT))

@@ -9,8 +9,8 @@ from curlshot.vision.detection.contrast import by_hue
 from curlshot.vision.detection.mixture import FULL, SLIM, CapRays
 from curlshot.vision.detection.rays import Rays, directions
 from curlshot.vision.detection.shoulder import against_beyond
-from curlshot.vision.film.lab import lab_of
-from curlshot.vision.film.picture import TO_CHROMA
+from curlshot.vision.video.colour import lab_of
+from curlshot.vision.video.picture import TO_CHROMA
 
 Array = NDArray[np.float64]
 

@@ -11,17 +11,8 @@ from curlshot.vision.optics.camera import (
     Camera,
     CameraError,
     camera_table,
-    taken_at,
 )
 from curlshot.vision.optics.projection import PARAMETERS, apply_homography
-
-
-def test_cameras_are_told_the_times_at_which_frames_were_taken() -> None:
-    matrix = np.diag([100.0, -100.0, 1.0])
-    cameras = [Camera(k, 0.04 * k, matrix + k, SIZE) for k in (0, 2, 3)]
-    some = taken_at(cameras, {0: -0.01, 1: 0.04, 3: 0.13})
-    assert [(c.frame, c.t) for c in some] == [(0, -0.01), (3, 0.13)]
-    assert np.array_equal(some[1].homography, cameras[2].homography)
 
 
 def test_parallax_has_the_size_of_similar_triangles() -> None:

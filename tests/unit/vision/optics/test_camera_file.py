@@ -7,12 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.data.errors import InputError
 from curlshot.data.tracks import write_table
 from curlshot.synthetic import still_camera
-from curlshot.vision.film.clip import Clip, open_clip
 from curlshot.vision.optics.camera import Camera, camera_table
 from curlshot.vision.optics.camera_file import given_cameras, read_cameras
+from curlshot.vision.video.reader import Video, open_video
 
 SIZE = (320, 240)
 
@@ -30,14 +31,14 @@ def cameras(count: int) -> list[Camera]:
 
 
 @pytest.fixture
-def clip(tmp_path: Path) -> Clip:
+def clip(tmp_path: Path) -> Video:
     pictures = [tmp_path / f"{k}.png" for k in range(3)]
     for picture in pictures:
         cv2.imwrite(str(picture), np.full((*SIZE[::-1], 3), 200, np.uint8))
-    return open_clip(pictures, 25.0)
+    return open_video(pictures, VideoConfig(fps=25.0))
 
 
-def test_what_is_written_is_read_back(clip: Clip, tmp_path: Path) -> None:
+def test_what_is_written_is_read_back(clip: Video, tmp_path: Path) -> None:
     path = tmp_path / "camera.csv"
     table = camera_table(cameras(3))
     table["remark"] = "seen"
@@ -52,7 +53,7 @@ def test_what_is_written_is_read_back(clip: Clip, tmp_path: Path) -> None:
         np.testing.assert_allclose(one.ice(pixel, 0.12), two.ice(pixel, 0.12), atol=1e-6)
 
 
-def test_one_row_is_a_still_camera(clip: Clip, tmp_path: Path) -> None:
+def test_one_row_is_a_still_camera(clip: Video, tmp_path: Path) -> None:
     path = tmp_path / "still.csv"
     # In any scale, with no more than the homography.
     matrix = -2.5 * cameras(1)[0].homography
@@ -65,7 +66,7 @@ def test_one_row_is_a_still_camera(clip: Clip, tmp_path: Path) -> None:
     assert any("place is not given" in note for note in notes)
 
 
-def test_frames_without_a_camera_are_left_out(clip: Clip, tmp_path: Path) -> None:
+def test_frames_without_a_camera_are_left_out(clip: Video, tmp_path: Path) -> None:
     path = tmp_path / "camera.csv"
     write_table(camera_table(cameras(2)), path)
     found, notes = given_cameras(clip, path)

@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from curlshot.vision.film.clip import Frame
 from curlshot.vision.optics.camera import Camera
 from curlshot.vision.optics.placed import Placed, nobody
+from curlshot.vision.video.frame import Frame
 
 
 def test_whom_nobody_tells_anything_changes_nothing() -> None:

@@ -11,12 +11,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.data.errors import InputError
 from curlshot.data.project import read_project
 from curlshot.data.tracks import check_detections
 from curlshot.data.trk import Coordinates
 from curlshot.data.trk_write import View, project_xml, write_trk, write_trz
-from curlshot.vision.optics.project_clip import ProjectClip, open_project_clip, project_cameras
+from curlshot.vision.optics.project_clip import project_cameras
+from curlshot.vision.video.reader import Video, open_video
 
 SIZE = (320, 240)
 FRAMES = 12
@@ -55,7 +57,7 @@ def project(
     return project_xml(table, View(system, SIZE, video, FRAMES), np.full((count, 2), 50.0))
 
 
-def times(clip: ProjectClip) -> list[tuple[int, float, float]]:
+def times(clip: Video) -> list[tuple[int, float, float]]:
     return [(f.index, round(f.t, 9), float(np.round(f.image.mean(), -1))) for f in clip]
 
 
@@ -63,17 +65,17 @@ def test_steps_of_the_project_at_its_times(tmp_path: Path) -> None:
     video(tmp_path / "clip.mp4")
     text = project(("clip.mp4",), range(2, 11), start=1.5)
     write_trk(text, tmp_path / "shot.trk")
-    clip = open_project_clip(tmp_path / "shot.trk")
+    clip = open_video([tmp_path / "shot.trk"])
     wanted = [(n, round(1.5 + 0.04 * (n - 2), 9), 10.0 * n) for n in range(2, 11)]
     assert times(clip) == wanted
     assert clip.read == clip.expected == 9
     assert clip.fps == pytest.approx(25)
     assert clip.warnings == []
-    assert times(open_project_clip(tmp_path / "shot.trk", frames=(4, 6))) == wanted[2:5]
+    assert times(open_video([tmp_path / "shot.trk"], VideoConfig(frames=(4, 6)))) == wanted[2:5]
     text = text.replace('"stepsize" type="int">1', '"stepsize" type="int">3')
     text = text.replace('"stepcount" type="int">9', '"stepcount" type="int">3')
     write_trk(text, tmp_path / "shot.trk")
-    clip = open_project_clip(tmp_path / "shot.trk")
+    clip = open_video([tmp_path / "shot.trk"])
     assert times(clip) == wanted[::3]
     assert clip.expected == 3
     assert clip.fps == pytest.approx(25 / 3)
@@ -82,7 +84,7 @@ def test_steps_of_the_project_at_its_times(tmp_path: Path) -> None:
 def test_slow_motion_is_paced_by_the_project(tmp_path: Path) -> None:
     video(tmp_path / "clip.mp4", fps=25.0)
     write_trk(project(("clip.mp4",), step=1 / 240), tmp_path / "shot.trk")
-    clip = open_project_clip(tmp_path / "shot.trk")
+    clip = open_video([tmp_path / "shot.trk"])
     np.testing.assert_allclose([f.t for f in clip], np.arange(FRAMES) / 240, atol=1e-9)
     assert any(
         "a frame lasts 4.167 ms in the project, 40 ms in its video" in w for w in clip.warnings
@@ -103,7 +105,7 @@ def test_a_clip_in_an_archive_lasts_as_long_as_it_is_used(tmp_path: Path, unpack
     names = {f"videos/{file.name}": file for file in files}
     write_trz(project(tuple(names)), tmp_path / "shot.trz", names)
     shutil.rmtree(tmp_path / "f")
-    clip = open_project_clip(tmp_path / "shot.trz")
+    clip = open_video([tmp_path / "shot.trz"])
     assert len(list(unpacked.iterdir())) == 1
     for _ in range(2):
         assert times(clip) == [(n, round(0.04 * n, 9), 10.0 * n) for n in range(FRAMES)]
@@ -115,37 +117,37 @@ def test_a_clip_in_an_archive_lasts_as_long_as_it_is_used(tmp_path: Path, unpack
 def test_what_cannot_be_opened_is_named_by_its_project(tmp_path: Path, unpacked: Path) -> None:
     write_trk(project(("clip.mp4",)), tmp_path / "a.trk")
     with pytest.raises(InputError, match=r"a\.trk: its clip clip\.mp4 is not there"):
-        open_project_clip(tmp_path / "a.trk")
+        open_video([tmp_path / "a.trk"])
     (tmp_path / "clip.mp4").write_bytes(b"no clip")
     with pytest.raises(InputError, match=r"a\.trk: clip\.mp4: not a video"):
-        open_project_clip(tmp_path / "a.trk")
+        open_video([tmp_path / "a.trk"])
     write_trz(project(("v/clip.mp4",)), tmp_path / "a.trz", {"v/clip.mp4": tmp_path / "clip.mp4"})
     with pytest.raises(InputError, match=r"a\.trz: \d*-clip\.mp4: not a video"):
-        open_project_clip(tmp_path / "a.trz")
+        open_video([tmp_path / "a.trz"])
     assert list(unpacked.iterdir()) == []
     write_trk(project(()), tmp_path / "b.trk")
     with pytest.raises(InputError, match=r"b\.trk: a project without a clip"):
-        open_project_clip(tmp_path / "b.trk")
+        open_video([tmp_path / "b.trk"])
 
 
 def test_the_calibration_of_a_project_is_a_camera(tmp_path: Path) -> None:
     """Tracker's own formula, with OpenCV's pixels and metres."""
     files = pictures(tmp_path)
     write_trk(project(tuple(file.name for file in files)), tmp_path / "shot.trk")
-    clip = open_project_clip(tmp_path / "shot.trk")
+    clip = open_video([tmp_path / "shot.trk"])
     system = read_project(tmp_path / "shot.trk").axes
-    cameras, notes = project_cameras(clip, clip.project)
+    cameras, notes = project_cameras(clip, clip.source.project)
     assert [camera.frame for camera in cameras] == list(range(FRAMES))
     assert "neither perspective nor the height" in notes[0]
     pixels = np.array([[10.0, 20.0], [200.0, 100.0]])
     for camera in cameras:
         world = system.world([camera.frame] * 2, pixels + 0.5)
         np.testing.assert_allclose(camera.ice(pixels), world, atol=1e-12)
-    in_cm = replace(clip.project, length_unit="cm")
+    in_cm = replace(clip.source.project, length_unit="cm")
     (camera, *_), _ = project_cameras(clip, in_cm)
     np.testing.assert_allclose(camera.ice(pixels), cameras[0].ice(pixels) / 100)
     with pytest.raises(InputError, match="“ell”, which is unknown here"):
-        project_cameras(clip, replace(clip.project, length_unit="ell"))
+        project_cameras(clip, replace(clip.source.project, length_unit="ell"))
 
 
 @pytest.mark.parametrize(
@@ -161,9 +163,9 @@ def test_a_calibration_that_is_none_is_refused(
     files = pictures(tmp_path)
     text = project(tuple(file.name for file in files)).replace(old, new)
     write_trk(text, tmp_path / "shot.trk")
-    clip = open_project_clip(tmp_path / "shot.trk")
+    clip = open_video([tmp_path / "shot.trk"])
     with pytest.raises(InputError, match=reason):
-        project_cameras(clip, clip.project)
+        project_cameras(clip, clip.source.project)
 
 
 def test_a_calibration_of_changed_pictures_is_refused(tmp_path: Path) -> None:
@@ -175,7 +177,7 @@ def test_a_calibration_of_changed_pictures_is_refused(tmp_path: Path) -> None:
     text = project(tuple(file.name for file in files))
     text = text.replace('core.ImageVideo">', f'core.ImageVideo">{filters}')
     write_trk(text, tmp_path / "shot.trk")
-    clip = open_project_clip(tmp_path / "shot.trk")
+    clip = open_video([tmp_path / "shot.trk"])
     assert any("radial distortion) are not applied" in text for text in clip.warnings)
     with pytest.raises(InputError, match="changed by filters"):
-        project_cameras(clip, clip.project)
+        project_cameras(clip, clip.source.project)

@@ -7,9 +7,10 @@ import cv2
 import numpy as np
 import pytest
 
+from curlshot.config import VideoConfig
 from curlshot.data.errors import InputError
-from curlshot.vision.film.clip import open_clip
 from curlshot.vision.optics.stick import stick_camera, stick_cameras
+from curlshot.vision.video.reader import open_video
 
 
 def test_y_points_up_in_the_picture() -> None:
@@ -31,7 +32,7 @@ def test_a_stick_without_a_length_is_refused(
 @pytest.mark.parametrize("beside", [(-1, 10), (65, 10), (10, -1), (10, 49), (math.nan, 10)])
 def test_a_stick_beside_the_picture_is_refused(tmp_path: Path, beside: tuple[float, float]) -> None:
     cv2.imwrite(str(tmp_path / "0.png"), np.full((48, 64, 3), 90, np.uint8))
-    clip = open_clip([tmp_path / "0.png"], 10.0)
+    clip = open_video([tmp_path / "0.png"], VideoConfig(fps=10.0))
     for stick in ((30.0, 30.0, *beside, 0.5), (*beside, 30.0, 30.0, 0.5)):
         with pytest.raises(InputError, match=r"stick .*not in a picture of 64 × 48 px"):
             stick_cameras(clip, stick)
@@ -45,7 +46,9 @@ def test_every_frame_has_the_camera_of_the_stick(tmp_path: Path) -> None:
     told: list[tuple[int, float]] = []
     stick = (10.0, 10.0, 60.0, 10.0, 0.5)
     cameras = stick_cameras(
-        open_clip(files, 10.0), stick, placed=lambda frame, _: told.append((frame.index, frame.t))
+        open_video(files, VideoConfig(fps=10.0)),
+        stick,
+        placed=lambda frame, _: told.append((frame.index, frame.t)),
     )
     assert [(c.frame, c.t) for c in cameras] == told == [(0, 0.0), (1, 0.1), (2, 0.2)]
     for camera in cameras:

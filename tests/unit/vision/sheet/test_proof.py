@@ -18,12 +18,12 @@ from curlshot.tests.helpers.vision.proof import (
     proved,
     seen,
 )
-from curlshot.vision.film.picture import Image
 from curlshot.vision.optics.pose import View, project
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.marks import measure_marks
 from curlshot.vision.sheet.proof import is_house, stands_alone, worth
+from curlshot.vision.video.picture import Image
 
 
 @pytest.fixture(scope="module")

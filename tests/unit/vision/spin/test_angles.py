@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.tests.helpers.vision.handles import RADII, SURE, spectrum
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.angles import angles_in_parts
+from curlshot.vision.video.disk_cache import Cached
 
 TIMES = np.arange(300) / 25
 SPIN = 2.2
@@ -17,7 +17,7 @@ SPIN = 2.2
 def told(
     pictures: list[NDArray[np.complex64] | None], most: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    kept = [None if picture is None else Kept(picture) for picture in pictures]
+    kept = [None if picture is None else Cached(picture) for picture in pictures]
     angles = angles_in_parts(TIMES, kept, RADII, np.full(len(TIMES), SURE), most)
     return angles.theta, angles.sd
 
@@ -48,7 +48,7 @@ def test_nothing_seen_tells_nothing() -> None:
     assert np.isnan(theta).all() and np.isnan(sd).all()
 
 
-class Counted(Kept[NDArray[np.complex64]]):
+class Counted(Cached[NDArray[np.complex64]]):
     """A picture of which copies are read, and how many copies are held."""
 
     held = most = 0

@@ -5,10 +5,10 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.tests.helpers.vision.handles import RADII, SURE, patch
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.angles import angles_in_parts
 from curlshot.vision.spin.common_height import common_height, turned_widely
 from curlshot.vision.spin.handle import DOUBT, HandleAngles, cap_spectrum
+from curlshot.vision.video.disk_cache import Cached
 
 TIMES = np.arange(80) / 25
 ASIDE = (0.0, 0.035)
@@ -22,7 +22,7 @@ def told(theta: float, *unlike: float) -> HandleAngles:
     )
 
 
-def pictures(true: NDArray[np.float64], seed: int) -> list[Kept[NDArray[np.complex64]]]:
+def pictures(true: NDArray[np.float64], seed: int) -> list[Cached[NDArray[np.complex64]]]:
     """A grip at its own height, its picture unsure; at that of the cap aside."""
     rng = np.random.default_rng(seed)
     kept = []
@@ -30,7 +30,7 @@ def pictures(true: NDArray[np.float64], seed: int) -> list[Kept[NDArray[np.compl
         grip, cap = patch(turn).astype(float), patch(turn, shift=ASIDE)
         both = np.concatenate([grip, cap], axis=1)
         both[:, : len(RADII)] += rng.normal(0, 8, grip.shape)
-        kept.append(Kept(cap_spectrum(np.clip(both, 0, 255).astype(np.uint8), RADII)))
+        kept.append(Cached(cap_spectrum(np.clip(both, 0, 255).astype(np.uint8), RADII)))
     return kept
 
 
@@ -57,7 +57,7 @@ def test_a_height_may_be_given(most: int) -> None:
     shown = pictures(true, 3)
     rings = len(RADII)
     for height in (0, 1):
-        part = [Kept(each.get()[:, height * rings : (height + 1) * rings]) for each in shown]
+        part = [Cached(each.get()[:, height * rings : (height + 1) * rings]) for each in shown]
         given = angles_in_parts(TIMES, shown, RADII, sd, most, height=height)
         np.testing.assert_array_equal(
             given.theta, angles_in_parts(TIMES, part, RADII, sd, most).theta

@@ -12,11 +12,11 @@ from curlshot.tests.helpers.vision.steep_handles import (
     pictures,
     spin_off,
 )
-from curlshot.vision.film.shelf import Kept
 from curlshot.vision.spin.align import align
 from curlshot.vision.spin.angles import angles_in_parts
 from curlshot.vision.spin.handle import handle_angles
 from curlshot.vision.spin.pitch import levelled
+from curlshot.vision.video.disk_cache import Cached
 
 
 def size(rise: Array) -> float:
@@ -102,7 +102,7 @@ def test_angles_of_a_stone_are_levelled() -> None:
 
 @pytest.mark.parametrize("most", [500, 40])
 def test_angles_that_are_told_part_by_part_are_levelled_too(most: int) -> None:
-    shown = [*map(Kept, pictures(0.35))]
+    shown = [*map(Cached, pictures(0.35))]
     sd = np.full(len(TIMES), 0.0005)
     plain = angles_in_parts(TIMES, shown, RADII, sd, most)
     aslant = angles_in_parts(TIMES, shown, RADII, sd, most, SLANTS)

@@ -13,8 +13,8 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.synthetic.video import write_video
-from curlshot.vision.film.cadence import Shown, cadence_of
-from curlshot.vision.film.clip import Clip, open_clip
+from curlshot.vision.video.reader import Video, open_video
+from curlshot.vision.video.telecine import Shown, find_telecine
 
 Image = NDArray[np.uint8]
 TOLD = 30.0
@@ -38,13 +38,13 @@ def told(
     *,
     grain: float = 2.0,
     late: float | NDArray[np.float64] = 0.0,
-) -> Clip:
+) -> Video:
     """Write a clip whose frames show these pictures."""
     times = np.arange(len(shown)) / TOLD + late
     pictures = [*scene(np.broadcast_to(pace, max(shown) + 1).tolist(), grain)]
     frames = [(float(t), pictures[which]) for t, which in zip(times, shown, strict=True)]
     write_video(path, frames, fps=TOLD)
-    return open_clip([path])
+    return open_video([path])
 
 
 def pulled_down(rate: Fraction, pictures: int, begin: Fraction = Fraction(0)) -> list[int]:
@@ -57,9 +57,9 @@ def firsts(shown: Sequence[int]) -> list[int]:
     return [k for k, which in enumerate(shown) if which not in shown[:k]]
 
 
-def read_twice(clip: Clip) -> tuple[list[int], list[float]]:
+def read_twice(clip: Video) -> tuple[list[int], list[float]]:
     """Frames and times of a second pass; the first shows the cadence."""
-    assert clip.cadence is None
+    assert clip.telecine is None
     for _ in clip:
         pass
     frames = [(frame.index, frame.t) for frame in clip]
@@ -93,8 +93,8 @@ def test_pictures_have_the_times_at_which_they_were_taken(
     np.testing.assert_allclose(off, off.mean(), atol=0.06 / TOLD)
     told_at = np.array(frames) / TOLD
     assert np.abs(times[1:] - told_at[1:]).max() < 0.5 / TOLD
-    assert sorted([*frames, *clip.repeated]) == [*range(len(shown))]
-    for frame, (t, of) in clip.repeated.items():
+    assert sorted([*frames, *clip.duplicates]) == [*range(len(shown))]
+    for frame, (t, of) in clip.duplicates.items():
         assert of == firsts(shown)[shown[frame] - shown[0]]
         assert t == pytest.approx(frame / TOLD, abs=1e-3)
 
@@ -103,9 +103,9 @@ def test_it_is_said_what_was_done(tmp_path: Path) -> None:
     clip = told(tmp_path / "a.mp4", pulled_down(Fraction(24, 30), 60))
     read_twice(clip)
     (said,) = clip.warnings
-    assert "15 of 75 pictures repeat the one before them" in said
-    assert "24 pictures a second that is told as one of 30" in said
-    assert "spaced evenly in time" in said
+    assert "15 of 75 frames repeat the one before" in said
+    assert "converted from 24 to 30 frames a second" in said
+    assert "even times are restored" in said
 
 
 def test_a_first_pass_gives_frames_as_they_are_told(tmp_path: Path) -> None:
@@ -114,7 +114,7 @@ def test_a_first_pass_gives_frames_as_they_are_told(tmp_path: Path) -> None:
     np.testing.assert_allclose(*zip(*given, strict=True), atol=1e-3)
     # Of a first repeat nothing says yet that it is alone.
     assert clip.read == len(given) in (74, 75)
-    assert (clip.passed, len(clip.repeated)) == (75, 15)
+    assert (clip.decoded, len(clip.duplicates)) == (75, 15)
 
 
 def test_a_cadence_goes_on_while_nothing_moves(tmp_path: Path) -> None:
@@ -133,11 +133,11 @@ def test_a_cadence_stays_where_the_recording_halts(tmp_path: Path) -> None:
     np.testing.assert_allclose(np.diff(times)[:30], 1 / 24, rtol=5e-3)
 
 
-def as_told(clip: Clip, kept: Sequence[int] | None = None) -> bool:
+def as_told(clip: Video, kept: Sequence[int] | None = None) -> bool:
     """Whether a second pass gives frames at the times at which they are told."""
     frames, times = read_twice(clip)
     np.testing.assert_allclose(np.array(times) * TOLD, frames, atol=1e-3)
-    return clip.cadence is None and (kept is None or frames == [*kept])
+    return clip.telecine is None and (kept is None or frames == [*kept])
 
 
 def test_repeats_that_come_by_chance_leave_times_as_they_are(tmp_path: Path) -> None:
@@ -155,17 +155,17 @@ def test_pictures_that_are_lost_and_the_one_before_told_instead_come_in_no_caden
     assert as_told(told(tmp_path / "a.mp4", shown))
 
 
-def test_repeats_that_grain_hides_make_no_cadence_of_the_others(tmp_path: Path) -> None:
+def test_repeats_that_grain_hides_make_no_find_telecine_the_others(tmp_path: Path) -> None:
     shown = pulled_down(Fraction(24, 30), 80)
     clip = told(tmp_path / "a.mp4", shown, grain=8.0)
     frames, _ = read_twice(clip)
-    assert clip.cadence is not None
+    assert clip.telecine is not None
     assert frames == firsts(shown)
 
 
 def test_repeats_among_which_nothing_is_surely_new_have_no_cadence() -> None:
     seen = [None, False] * 4 + [None]
-    assert cadence_of([Shown(k, k / 50, new, 1.0) for k, new in enumerate(seen)]) is None
+    assert find_telecine([Shown(k, k / 50, new, 1.0) for k, new in enumerate(seen)]) is None
 
 
 @pytest.mark.parametrize(("pause", "one"), [(0.0, True), (3600.0, False), (95_000.0, False)])
@@ -176,7 +176,7 @@ def test_no_cadence_goes_on_across_a_pause(pause: float, one: bool) -> None:
     frames = [
         Shown(k, t, bool(n), float(n)) for k, (t, n) in enumerate(zip(times, new, strict=True))
     ]
-    assert (cadence_of(frames) is not None) == one
+    assert (find_telecine(frames) is not None) == one
 
 
 def test_pictures_that_are_all_told_twice_are_told_evenly(tmp_path: Path) -> None:
@@ -197,7 +197,7 @@ def test_times_that_vary_are_those_of_the_container(tmp_path: Path) -> None:
     late[0] = 0.0
     clip = told(tmp_path / "a.mp4", shown, late=late)
     frames, times = read_twice(clip)
-    assert clip.cadence is None
+    assert clip.telecine is None
     np.testing.assert_allclose(times, np.array(frames) / TOLD + late[frames], atol=1e-4)
 
 

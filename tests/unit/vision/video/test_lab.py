@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from curlshot.vision.film.lab import bgr_of, chroma, lab_of
+from curlshot.vision.video.colour import bgr_of, chroma, lab_of
 
 
 def test_colours_are_those_of_opencv() -> None:

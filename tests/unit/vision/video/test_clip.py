@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from curlshot.config import VideoConfig
 from curlshot.data.errors import InputError
-from curlshot.vision.film.clip import Frame, open_clip
+from curlshot.vision.video.frame import Frame
+from curlshot.vision.video.reader import open_video
 
 WIDTH, HEIGHT = 96, 64
 
@@ -60,31 +62,30 @@ def uneven(n: int = 40) -> NDArray[np.float64]:
 @pytest.mark.parametrize("name", ["clip.mp4", "clip.mov", "clip.mkv", "Kürling 1.mp4"])
 def test_times_are_those_of_the_container(tmp_path: Path, name: str) -> None:
     times = uneven()
-    clip = open_clip([write_clip(tmp_path / name, times)])
+    clip = open_video([write_clip(tmp_path / name, times)])
     frames = list(clip)
     assert [frame.index for frame in frames] == list(range(40))
     assert [number(frame) for frame in frames] == list(range(40))
     np.testing.assert_allclose([frame.t for frame in frames], times, rtol=0, atol=1e-3)
     assert clip.size == (WIDTH, HEIGHT)
-    assert clip.is_video
     assert clip.warnings == []
     assert all(frame.image.dtype == np.uint8 for frame in frames)
 
 
 def test_a_clip_can_be_read_again(tmp_path: Path) -> None:
-    clip = open_clip([write_clip(tmp_path / "clip.mp4", np.arange(12) / 25)])
+    clip = open_video([write_clip(tmp_path / "clip.mp4", np.arange(12) / 25)])
     first = [(frame.index, frame.t) for frame in clip]
     for frame in clip:
         if frame.index == 5:
             break
     assert [(frame.index, frame.t) for frame in clip] == first
-    assert clip.expected == clip.frames == 12
+    assert clip.expected == clip.source.frames == 12
     assert clip.fps == pytest.approx(25, rel=0.02)  # the last frame may last longer
 
 
 def test_squeezed_pictures_are_shown_as_they_are_meant(tmp_path: Path) -> None:
     plain, squeezed = (
-        open_clip([write_clip(tmp_path / f"{k}.mp4", np.arange(3) / 25, pixel=pixel)])
+        open_video([write_clip(tmp_path / f"{k}.mp4", np.arange(3) / 25, pixel=pixel)])
         for k, pixel in enumerate((Fraction(1), Fraction(4, 3)))
     )
     assert plain.size == (WIDTH, HEIGHT)
@@ -97,17 +98,17 @@ def test_squeezed_pictures_are_shown_as_they_are_meant(tmp_path: Path) -> None:
 
 def test_a_range_of_frames_keeps_numbers_and_times(tmp_path: Path) -> None:
     path = write_clip(tmp_path / "clip.mp4", uneven())
-    clip = open_clip([path], frames=(7, 11))
+    clip = open_video([path], VideoConfig(frames=(7, 11)))
     frames = list(clip)
     assert [frame.index for frame in frames] == [7, 8, 9, 10, 11]
     assert [number(frame) for frame in frames] == [7, 8, 9, 10, 11]
     np.testing.assert_allclose([frame.t for frame in frames], uneven()[7:12], atol=1e-3)
     assert clip.expected == 5
     assert clip.warnings == []
-    assert len(list(open_clip([path], frames=(35, None)))) == 5
+    assert len(list(open_video([path], VideoConfig(frames=(35, None))))) == 5
     for wrong in ((5, 4), (-1, None), (40, None)):
         with pytest.raises(InputError):
-            open_clip([path], frames=wrong)
+            open_video([path], VideoConfig(frames=wrong))
 
 
 @pytest.mark.parametrize("part", [0.3, 0.6, 0.95])
@@ -119,7 +120,7 @@ def test_a_truncated_clip_is_used_as_far_as_it_goes(
     raw = write_clip(tmp_path / "whole.mp4", times, movflags="+faststart").read_bytes()
     path = tmp_path / "cut.mp4"
     path.write_bytes(raw[: int(part * len(raw))])
-    clip = open_clip([path])
+    clip = open_video([path])
     frames = list(clip)
     assert 40 * part - 8 < len(frames) < 40
     np.testing.assert_allclose([f.t for f in frames], times[: len(frames)], atol=1e-3)
@@ -136,7 +137,7 @@ def test_a_clip_without_its_index_is_refused(
     path = tmp_path / "cut.mp4"
     path.write_bytes(raw[: len(raw) // 2])
     with pytest.raises(InputError, match=r"cut\.mp4: not a video"):
-        open_clip([path])
+        open_video([path])
     assert capfd.readouterr() == ("", "")
 
 
@@ -158,11 +159,11 @@ def test_what_is_no_clip_is_refused_in_one_line(
         (tmp_path / "folder", "a folder"),
     ):
         with pytest.raises(InputError, match=reason) as refusal:
-            open_clip([path])
+            open_video([path])
         assert str(path) in str(refusal.value)
         assert "\n" not in str(refusal.value)
     with pytest.raises(InputError, match="no clip"):
-        open_clip([])
+        open_video([])
     assert capfd.readouterr() == ("", "")
 
 
@@ -181,7 +182,7 @@ def test_a_video_that_is_refused_is_closed(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(av, "open", watched)
     for which, frames, reason in ((hollow, None, "not a video"), (path, (5, None), "only 3")):
         with pytest.raises(InputError, match=reason):
-            open_clip([which], frames=frames)
+            open_video([which], VideoConfig(frames=frames))
         with pytest.raises(AssertionError, match="not open"):
             next(opened[-1].demux())
     assert len(opened) == 2
@@ -190,7 +191,7 @@ def test_a_video_that_is_refused_is_closed(tmp_path: Path, monkeypatch: pytest.M
 def test_two_videos_are_too_many(tmp_path: Path) -> None:
     paths = [write_clip(tmp_path / name, np.arange(3) / 25) for name in ("a.mp4", "b.mp4")]
     with pytest.raises(InputError, match="one video at a time"):
-        open_clip(paths)
+        open_video(paths)
 
 
 def write_pictures(folder: Path, count: int, suffix: str = ".png") -> list[Path]:
@@ -204,29 +205,28 @@ def write_pictures(folder: Path, count: int, suffix: str = ".png") -> list[Path]
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".bmp"])
 def test_pictures_have_the_rate_that_is_given(tmp_path: Path, suffix: str) -> None:
-    clip = open_clip(write_pictures(tmp_path, 12, suffix), fps=10)
+    clip = open_video(write_pictures(tmp_path, 12, suffix), VideoConfig(fps=10))
     frames = list(clip)
     assert [number(frame) for frame in frames] == list(range(12))
     np.testing.assert_allclose([frame.t for frame in frames], np.arange(12) / 10)
     assert clip.fps == 10
-    assert not clip.is_video
-    ranged = open_clip(clip.files, fps=10, frames=(3, 5))
+    ranged = open_video(clip.files, VideoConfig(fps=10, frames=(3, 5)))
     assert [frame.t for frame in ranged] == pytest.approx([0.3, 0.4, 0.5])
 
 
 def test_pictures_that_are_missing_leave_their_time(tmp_path: Path) -> None:
     paths = write_pictures(tmp_path, 8)
-    clip = open_clip([*paths[:3], *paths[5:]], fps=10)
+    clip = open_video([*paths[:3], *paths[5:]], VideoConfig(fps=10))
     assert [frame.index for frame in clip] == [0, 1, 2, 3, 4, 5]
     assert [frame.t for frame in clip] == pytest.approx([0, 0.1, 0.2, 0.5, 0.6, 0.7])
     (warning,) = clip.warnings
     assert "missing" in warning
     assert "up to 3 steps" in warning
-    assert not open_clip(paths, fps=10).warnings
+    assert not open_video(paths, VideoConfig(fps=10)).warnings
 
 
 def test_a_single_picture_has_no_rate(tmp_path: Path) -> None:
-    clip = open_clip(write_pictures(tmp_path, 1))
+    clip = open_video(write_pictures(tmp_path, 1))
     (frame,) = clip
     np.testing.assert_array_equal(frame.image, picture(0))
     assert frame.t == 0
@@ -238,7 +238,7 @@ def test_bad_pictures_are_left_out_with_a_warning(tmp_path: Path) -> None:
     paths[0].write_bytes(b"")
     paths[2].write_bytes(b"no picture")
     cv2.imwrite(str(paths[4]), np.zeros((10, 10, 3), np.uint8))
-    clip = open_clip(paths)
+    clip = open_video(paths)
     assert [frame.index for frame in clip] == [1, 3, 5]
     assert [frame.t for frame in clip] == pytest.approx([0.04, 0.12, 0.2])
     assert "25 a second assumed" in clip.warnings[0]
@@ -247,4 +247,4 @@ def test_bad_pictures_are_left_out_with_a_warning(tmp_path: Path) -> None:
     for path in paths:
         path.write_bytes(b"")
     with pytest.raises(InputError, match="not a readable picture"):
-        open_clip(paths)
+        open_video(paths)

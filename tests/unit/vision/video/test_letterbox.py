@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from curlshot.config import VideoConfig
 from curlshot.synthetic import still_camera
-from curlshot.vision.film.clip import Clip, open_clip
-from curlshot.vision.film.picture import Planes
 from curlshot.vision.optics.camera import Camera, CameraError
-from curlshot.vision.optics.letterbox import LitClip, in_whole, lit_clip
+from curlshot.vision.video.picture import Planes
+from curlshot.vision.video.reader import Video, open_video
+from curlshot.vision.video.source import VideoFile
 
 Image = NDArray[np.uint8]
 
@@ -44,7 +45,7 @@ def barred(picture: Image, left: int, right: int, above: int = 0) -> Image:
     return out
 
 
-def video(path: Path, pictures: Sequence[Image], crf: int = 28) -> Clip:
+def video(path: Path, pictures: Sequence[Image], crf: int = 28) -> Video:
     with av.open(str(path), "w") as container:
         stream = container.add_stream("libx264", rate=25)
         stream.height, stream.width = pictures[0].shape[:2]
@@ -55,20 +56,25 @@ def video(path: Path, pictures: Sequence[Image], crf: int = 28) -> Clip:
             frame.pts, frame.time_base = k, Fraction(1, 25)
             container.mux(stream.encode(frame))
         container.mux(stream.encode())
-    return open_clip([path])
+    return open_video([path])
+
+
+def lit_clip(clip: Video) -> Video:
+    """The same clip, its bars cut off."""
+    clip.cut_bars()
+    return clip
 
 
 @pytest.mark.parametrize(("crf", "traces"), [(10, 0), (36, 8)])
 def test_bars_are_cut_off(tmp_path: Path, crf: int, traces: int) -> None:
     pictures = [barred(scene(k), 110, 110) for k in range(5)]
     pictures[2] = barred(scene(2), 110, 110, above=H // 2)  # all black for a moment
-    clip = video(tmp_path / "pillars.mp4", pictures, crf)
-    lit = lit_clip(clip)
-    assert isinstance(lit, LitClip)
+    lit = lit_clip(video(tmp_path / "pillars.mp4", pictures, crf))
     width, height = lit.size
+    assert lit.bars == ((W - width) // 2, 0) and lit.whole_size == (W, H)
     assert SHOWN <= width <= SHOWN + traces and height == H
     aside = (W - width) // 2
-    for whole, part in zip(list(clip), lit, strict=True):
+    for whole, part in zip(list(lit.uncut()), lit, strict=True):
         assert (part.index, part.t) == (whole.index, whole.t)
         assert part.picture.shape == (H, width, 3)
         # Colours stay with what they are colours of.
@@ -88,17 +94,20 @@ def test_a_title_on_a_bar_leaves_it_one(tmp_path: Path, at: tuple[int, int]) -> 
     assert lit.size == (W, H - 2 * 24)
 
 
-def test_bars_are_told_by_few_pictures(tmp_path: Path) -> None:
+def test_bars_are_told_by_few_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clip = video(tmp_path / "pillars.mp4", [barred(scene(0), 110, 110)] * 30)
-    assert len(list(clip.key_pictures())) < 3
+    assert len(list(clip.source.key_pictures())) < 3
+    monkeypatch.setattr(VideoFile, "__iter__", None)
     assert lit_clip(clip).size[0] < W
 
 
 def test_of_a_part_of_a_clip_all_pictures_are_asked(tmp_path: Path) -> None:
     bars = [barred(scene(0), 110, 110)] * 30
     whole = video(tmp_path / "clip.mp4", [*bars, *[scene(1)] * 20])
-    assert lit_clip(open_clip(whole.files, frames=(0, 29))).size[0] < W
-    assert len(list(open_clip(whole.files, frames=(25, 34)).key_pictures())) == 10
+    assert lit_clip(open_video(whole.files, VideoConfig(frames=(0, 29)))).size[0] < W
+    assert (
+        len(list(open_video(whole.files, VideoConfig(frames=(25, 34))).source.key_pictures())) == 10
+    )
 
 
 def test_pictures_of_another_size_have_no_say(tmp_path: Path) -> None:
@@ -106,7 +115,7 @@ def test_pictures_of_another_size_have_no_say(tmp_path: Path) -> None:
     video(paths[0], [barred(scene(0), 110, 110)] * 3)
     video(paths[1], [barred(scene(0), 110, 110)[: H // 2]] * 3)
     paths[0].write_bytes(b"".join(path.read_bytes() for path in paths))
-    lit = lit_clip(open_clip(paths[:1]))
+    lit = lit_clip(open_video(paths[:1]))
     assert lit.size[0] < W and len(list(lit)) == 3
 
 
@@ -114,18 +123,18 @@ def test_bars_that_give_way_between_the_pictures_that_are_asked_are_told_of(tmp_
     fading = [cv2.addWeighted(barred(scene(0), 110, 110), 1 - k, scene(0), k, 0.0)
               for k in np.linspace(0, 1, 20)]  # fmt: skip
     lit = lit_clip(video(tmp_path / "clip.mp4", fading))
-    assert isinstance(lit, LitClip) and not lit.warnings
+    assert any(lit.bars) and not lit.warnings
     assert len(list(lit)) == 20
     (warning,) = lit.warnings
-    assert "bars" in warning and "--frames" in warning
-    assert lit_clip(open_clip(lit.files, frames=(0, 19))).size == (W, H)
+    assert "bars" in warning and "`frames`" in warning
+    assert lit_clip(open_video(lit.files, VideoConfig(frames=(0, 19)))).size == (W, H)
 
 
 def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
     paths = [tmp_path / f"{k}.png" for k in range(2)]
     for k, path in enumerate(paths):
         cv2.imwrite(str(path), barred(scene(k), 0, 0, 23))
-    lit = lit_clip(open_clip(paths, 25.0))
+    lit = lit_clip(open_video(paths, VideoConfig(fps=25.0)))
     assert lit.size == (W, H - 48)  # to an even number
     assert [frame.image.shape for frame in lit] == [(H - 48, W, 3)] * 2
 
@@ -146,12 +155,10 @@ def test_above_and_below_and_of_pictures(tmp_path: Path) -> None:
     ids=["none", "fade", "hall", "night", "title", "uneven", "one side", "narrow", "sheet"],
 )
 def test_what_is_not_taken_for_bars(tmp_path: Path, pictures: list[Image]) -> None:
-    clip = video(tmp_path / "clip.mp4", pictures)
-    assert lit_clip(clip) is clip
+    clip = lit_clip(video(tmp_path / "clip.mp4", pictures))
+    assert clip.bars == (0, 0) and clip.size == clip.whole_size == (W, H)
     frames = list(clip)
     assert frames[0].index == 0 and frames[-1].index == len(pictures) - 1
-    one, same = in_whole(clip, [])
-    assert one is clip and same == ()
 
 
 def test_a_night_whose_picture_fades_in_between_bars(tmp_path: Path) -> None:
@@ -159,7 +166,7 @@ def test_a_night_whose_picture_fades_in_between_bars(tmp_path: Path) -> None:
     assert lit_clip(video(tmp_path / "clip.mp4", pictures)).size == (SHOWN, H)
 
 
-def test_cameras_in_pixels_of_the_whole() -> None:
+def test_cameras_in_pixels_of_the_whole(tmp_path: Path) -> None:
     path = still_camera(size=(SHOWN, H), target=(0.1, 0.4), px_per_m=30, k1=-0.05)
     view = path.at(0.0)
     root = np.random.default_rng(3).normal(size=(9, 9)) * 1e-3
@@ -168,9 +175,9 @@ def test_cameras_in_pixels_of_the_whole() -> None:
         3, 0.12, view.homography / view.homography[2, 2], (SHOWN, H), k1=view.lens.k1, k2=0.03,
         f_px=view.focal, position=view.position, error=error,
     )  # fmt: skip
-    whole = Clip((Path("clip.mp4"),), (W, H), 25.0, 4)
-    clip, (shown,) = in_whole(LitClip(whole, (110, 0)), [seen])
-    assert clip is whole and shown.size == (W, H)
+    clip = lit_clip(video(tmp_path / "pillars.mp4", [barred(scene(0), 110, 110)] * 4, crf=10))
+    (shown,) = clip.finish([seen])
+    assert shown.size == (W, H) == clip.whole_size and clip.size == seen.size
     ice = np.array([[0.0, 0.0], [1.2, -0.7], [-1.5, 1.9]])
     for height in (0.0, 0.12):
         moved = shown.project(ice, height) - seen.project(ice, height)

@@ -1,11 +1,11 @@
-"""Cadence: pictures taken at one even rate and told at another, some of them once more.
+"""Telecine: frames that were taken at one even rate and are shown at another, some of them twice.
 
-Where 24 pictures a second are told as 30, every fifth repeats the one before, and the others are
-told up to a frame early or late, more and more from one repeat to the next. With t in told frames,
-picture n was taken at t = n / rate + begin and is told at the frame nearest to it, rate < 1; so
-every frame at which the whole part of (t - begin + 1/2) rate grows shows a new picture, and all
-others repeat. Rate and begin are those that contradict what was seen of the frames least; where
-next to nothing contradicts them, each picture has the time at which it was taken.
+Where 24 frames a second are shown as 30, every fifth repeats the one before. The others are shown
+up to a frame early or late, more and more from one duplicate to the next. With t in shown frames,
+frame n was taken at t = n / rate + begin and is shown nearest to that time, rate < 1. So a shown
+frame is new where the whole part of (t - begin + 1/2) rate grows; all others are duplicates. Rate
+and begin are those that contradict the fewest shown frames. Where they contradict very few, each
+new frame gets the time at which it was taken.
 """
 
 from __future__ import annotations
@@ -17,43 +17,42 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from curlshot.data.measurement import Duplicate
+
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 LEAST = 4
-"""Repeats that it takes: three gaps between such as come by chance are hardly ever alike. And new
-pictures."""
+"""Fewest duplicates, and fewest new frames: three gaps by chance are rarely equal."""
 
 CONTRADICTED = 0.15
-"""Frames, per repeat, that may be other than the cadence has them: a flash, a stone that halts."""
+"""Most frames that contradict the conversion, per duplicate: a flash, a stone that halts."""
 
 UNEVEN = 0.2
-"""Part of a frame by which told times may be off an even grid: containers round them."""
+"""Most that times may be off an even grid, in frames: containers round them."""
 
 PAUSE = 64
-"""Frames from one to the next beyond which a recording was halted: no cadence goes on across it."""
+"""Longest gap, in frames: beyond it the recording was halted, and no conversion goes on."""
 
 EARLY = 0.05
-"""Part of a frame by which a picture must be told early or late: of pictures that are all told
-twice none is."""
+"""Least that a frame must be shown early or late, in frames: where all are shown twice none is."""
 
 GOES_ON = 0.3
-"""Power of the time told between two pictures with which they differ, at most. Where a cadence
-spaces them it is 0; where pictures were lost and the ones before told instead, 1/2 for edges that
-are far aside from one to the next, 1 for such as hardly move."""
+"""Largest power of the time between two frames by which they differ. It is 0 for a conversion,
+which spaces new frames evenly. Where frames were lost and the one before is shown instead, it is
+1/2 for edges that move far, 1 for edges that barely move."""
 
 AT_FIRST = 64
-"""Frames by which the rate is told at first; each time twice as many make it sharper."""
+"""Frames by which the rate is first estimated; each time twice as many make it sharper."""
 
 ROUGH, FINE = 10, 50
-"""Rates tried per one that comes to another picture within the frames looked at; in the end."""
+"""Rates tried per rate that comes to another frame within those looked at; in the end."""
 
 
 class Shown(NamedTuple):
-    """A frame of a clip: its number, its time, s, and whether it shows a new picture.
+    """A frame of a clip: its number, its time, s, and whether it is new.
 
-    `new` is None where nothing moves, or all stands still; `change` is by how much it differs from
-    the picture before.
+    `new` is None where nothing moves; `change` is by how much it differs from the frame before.
     """
 
     frame: int
@@ -63,32 +62,32 @@ class Shown(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Cadence:
-    """When the pictures of a clip were taken, that are told at another rate.
+class Telecine:
+    """When the frames of a clip were taken that are shown at another rate.
 
     Attributes
     ----------
-    rate, told : float
-        At which the pictures were taken and are told, 1/s.
+    rate, shown_rate : float
+        At which frames were taken and are shown, 1/s.
     times : dict of int to float
-        By the frame that first shows a picture, when it was taken, s.
-    repeats : dict of int to (float, int)
-        Of each other frame its time, s, and the frame that it repeats.
+        By number of each new frame, when it was taken, s.
+    duplicates : dict of int to Duplicate
+        All other frames.
     """
 
     rate: float
-    told: float
+    shown_rate: float
     times: dict[int, float]
-    repeats: dict[int, tuple[float, int]]
+    duplicates: dict[int, Duplicate]
 
 
-def cadence_of(shown: Sequence[Shown]) -> Cadence | None:
-    """Tell the cadence of a clip; None where it has none, or told times are as even already."""
-    if min(sum(one.new is told for one in shown) for told in (False, True)) < LEAST:
+def find_telecine(shown: Sequence[Shown]) -> Telecine | None:
+    """Find the conversion of a clip; None where there is none, or its times are as even already."""
+    if min(sum(one.new is new for one in shown) for new in (False, True)) < LEAST:
         return None
     new = np.array([bool(one.new) for one in shown])
     known = np.array([one.new is not None for one in shown])
-    # One that is not known alone, while something moves, is most likely a repeat coded anew.
+    # A single unknown one, while something moves, is most likely a duplicate that was coded again.
     known |= np.append(False, known[:-1]) & np.append(known[1:], False)
     at = _grid(np.array([one.t for one in shown]))
     if at is None:
@@ -110,12 +109,12 @@ def cadence_of(shown: Sequence[Shown]) -> Cadence | None:
     of = frames[first][np.cumsum(first) - 1]
     times = dict(zip(frames[first].tolist(), (start + step * taken[first]).tolist(), strict=True))
     again = zip(frames.tolist(), (start + step * at).tolist(), of.tolist(), strict=True)
-    repeats = {frame: (t, source) for frame, t, source in again if frame != source}
-    return Cadence(float(rate / step), float(1 / step), times, repeats)
+    duplicates = {frame: Duplicate(t, source) for frame, t, source in again if frame != source}
+    return Telecine(float(rate / step), float(1 / step), times, duplicates)
 
 
 def _grid(t: Floats) -> Floats | None:
-    """Whole numbers of frames at which times lie, from 0 on; None if they are uneven or halt."""
+    """Return the whole numbers of frames at which times lie; None if they are uneven or halt."""
     gaps = np.diff(t) / np.median(np.diff(t))
     if not gaps.max() < PAUSE:
         return None
@@ -125,18 +124,18 @@ def _grid(t: Floats) -> Floats | None:
 
 
 def _power(at: Floats, moved: Floats) -> float:
-    """Power of the time told since the picture before by which pictures differ from it.
+    """Return the power of the time since the frame before by which frames differ from it.
 
-    `moved` is 0 where next to nothing does; one is compared with the next, that hardly goes faster.
+    `moved` is 0 where next to nothing does. Each is compared with the next, which moves as fast.
     """
     lasts, change = np.log(np.diff(at)), np.log(np.maximum(moved[1:], 1e-3))
     more, by = np.diff(lasts), np.diff(change)
-    told = (moved[1:-1] > 0) & (moved[2:] > 0) & (more != 0)
-    return float(np.median(by[told] / more[told])) if told.any() else 0.0
+    known = (moved[1:-1] > 0) & (moved[2:] > 0) & (more != 0)
+    return float(np.median(by[known] / more[known])) if known.any() else 0.0
 
 
 def _fit(at: Floats, new: Flags) -> tuple[float, float]:
-    """Rate, per frame, and begin, in frames, by which fewest of the frames are contradicted."""
+    """Return rate, per frame, and begin, in frames, that contradict the fewest frames."""
     rate, around, begin = 0.5, 0.5, 0.0
     steps = [(min(AT_FIRST, len(at)), ROUGH)]
     while steps[-1][0] < len(at):
@@ -151,9 +150,9 @@ def _fit(at: Floats, new: Flags) -> tuple[float, float]:
 
 
 def _phase(at: Floats, new: Flags, rate: float) -> tuple[int, float, float, float]:
-    """How many frames a rate explains at best, how wide the begin may vary; rate and begin.
+    """Return how many frames a rate explains at best, the width of its begin, rate and begin.
 
-    A frame shows a new picture if (at - begin + 1/2) rate is less than `rate` above a whole
+    A frame is new if (at - begin + 1/2) rate is less than `rate` above a whole
     number: on a circle of such numbers, new ones lie in an arc as long as the rate, whose best
     place is sought.
     """

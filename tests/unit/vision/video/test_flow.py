@@ -3,7 +3,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from curlshot.vision.film.flow import similarity
+from curlshot.vision.video.flow import similarity
 
 SIZE = (1280, 720)
 

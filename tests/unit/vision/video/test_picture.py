@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from curlshot.vision.film.clip import open_clip
-from curlshot.vision.film.picture import (
+from curlshot.vision.video.picture import (
     Planes,
     brightened,
     channels_at,
@@ -18,6 +17,7 @@ from curlshot.vision.film.picture import (
     image_of,
     reduced,
 )
+from curlshot.vision.video.reader import open_video
 
 WIDTH, HEIGHT = 96, 64
 
@@ -39,7 +39,7 @@ def write(path: Path, image: NDArray[np.uint8], pixels: str) -> Path:
 
 
 def first(path: Path) -> Planes:
-    found = next(iter(open_clip([path]))).picture
+    found = next(iter(open_video([path]))).picture
     assert isinstance(found, Planes)
     return found
 
@@ -88,7 +88,7 @@ def test_a_clip_held_otherwise_is_shown_upright(tmp_path: Path, quarter: int) ->
     capture = cv2.VideoCapture(str(path))
     _, expected = capture.read()
     capture.release()
-    planes, clip = first(path), open_clip([path])
+    planes, clip = first(path), open_video([path])
     assert clip.size == expected.shape[1::-1] == planes.shape[1::-1]
     np.testing.assert_allclose(image_of(planes).astype(int), expected.astype(int), atol=3)
     sampled = colours_at(planes, *everywhere(planes.shape))

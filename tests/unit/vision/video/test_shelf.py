@@ -10,29 +10,29 @@ from typing import IO, NoReturn
 import numpy as np
 import pytest
 
-from curlshot.vision.film.shelf import Kept, Shelf
+from curlshot.vision.video.disk_cache import Cached, DiskCache
 
 
 def test_what_was_put_aside_is_had_again_in_any_order() -> None:
-    shelf, rng = Shelf(), np.random.default_rng(1)
+    cache, rng = DiskCache(), np.random.default_rng(1)
     arrays = [rng.normal(size=size) for size in (3, 50_000, 1, 700)]
-    kept = [Kept(array) for array in arrays]
+    kept = [Cached(array) for array in arrays]
     for each in kept[:3]:
-        each.put_aside(shelf)
+        each.put_aside(cache)
     np.testing.assert_array_equal(kept[1].get(), arrays[1])
-    kept[3].put_aside(shelf)  # written behind all, though another was read last
+    kept[3].put_aside(cache)  # written behind all, though another was read last
     for each, array in [*zip(kept, arrays, strict=True)][::-1]:
         np.testing.assert_array_equal(each.get(), array)
 
 
 def test_memory_holds_no_more_than_where_things_lie() -> None:
-    shelf = Shelf()
+    cache = DiskCache()
     tracemalloc.start()
     begin = tracemalloc.get_traced_memory()[0]
     kept = []
     for number in range(200):
-        kept.append(Kept(np.full(10_000, float(number))))
-        kept[-1].put_aside(shelf)
+        kept.append(Cached(np.full(10_000, float(number))))
+        kept[-1].put_aside(cache)
     held = tracemalloc.get_traced_memory()[0] - begin
     tracemalloc.stop()
     assert held < 200 * 1_000
@@ -41,13 +41,13 @@ def test_memory_holds_no_more_than_where_things_lie() -> None:
 
 def test_the_first_things_stay_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "TemporaryFile", no_file)
-    shelf, things = Shelf(room=2), [np.full(3, float(number)) for number in range(3)]
-    held = [Kept(thing) for thing in things[:2]]
+    cache, things = DiskCache(room=2), [np.full(3, float(number)) for number in range(3)]
+    held = [Cached(thing) for thing in things[:2]]
     for one in held:
-        one.put_aside(shelf)
+        one.put_aside(cache)
     assert all(one.get() is thing for one, thing in zip(held, things, strict=False))
     with pytest.raises(OSError, match="nowhere to write"):
-        shelf.put(things[2])
+        cache.put(things[2])
 
 
 class Full(io.BytesIO):
@@ -66,36 +66,36 @@ def test_what_finds_no_room_stays_in_memory(
     monkeypatch: pytest.MonkeyPatch, opened: Callable[..., IO[bytes]]
 ) -> None:
     monkeypatch.setattr(tempfile, "TemporaryFile", opened)
-    kept, shelf = [Kept(np.full(3, float(number))) for number in range(3)], Shelf()
+    kept, cache = [Cached(np.full(3, float(number))) for number in range(3)], DiskCache()
     for each in kept:
-        each.put_aside(shelf)
+        each.put_aside(cache)
     assert [each.get()[0] for each in kept] == [0, 1, 2]
 
 
 def test_of_things_on_a_shelf_what_lies_there_too_is_not_written_again() -> None:
-    shelf, other, large = Shelf(), Shelf(), np.arange(10_000.0)
-    kept, elsewhere = Kept(large), Kept(np.ones(2))
-    kept.put_aside(shelf)
+    cache, other, large = DiskCache(), DiskCache(), np.arange(10_000.0)
+    kept, elsewhere = Cached(large), Cached(np.ones(2))
+    kept.put_aside(cache)
     elsewhere.put_aside(other)
-    place = shelf.put([kept, elsewhere, Kept("in memory")])
+    place = cache.put([kept, elsewhere, Cached("in memory")])
     assert place is not None and place[1] < 1_000
-    again = [one.get() for one in shelf.read(place)]
+    again = [one.get() for one in cache.read(place)]
     np.testing.assert_array_equal(again[0], large)
     np.testing.assert_array_equal(again[1], 1.0)
     assert again[2] == "in memory"
 
 
 def test_what_lies_on_a_shelf_stays_where_it_lies() -> None:
-    kept, shelf = Kept("as it was"), Shelf()
-    kept.put_aside(shelf)
-    first = kept.place_on(shelf)
-    kept.put_aside(Shelf())
-    assert kept.place_on(shelf) == first
+    kept, cache = Cached("as it was"), DiskCache()
+    kept.put_aside(cache)
+    first = kept.place_on(cache)
+    kept.put_aside(DiskCache())
+    assert kept.place_on(cache) == first
 
 
 def test_a_thing_outlives_whoever_put_it_aside() -> None:
-    kept = Kept("as it was")
-    kept.put_aside(Shelf())
+    kept = Cached("as it was")
+    kept.put_aside(DiskCache())
     gc.collect()
     assert kept.get() == "as it was"
     del kept

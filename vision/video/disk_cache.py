@@ -1,8 +1,8 @@
-"""Storage on disk till the end of a clip: a temporary file without a name, the first things apart.
+"""A disk cache that lasts as long as a clip is read: a temporary file without a name.
 
-Whoever has a `Kept` has the thing by `Kept.get`, wherever it is. In memory at first, it goes to a
-`Shelf` by `Kept.put_aside` and is read from there anew each time; what is left of it in memory is
-where it lies. Things may hold others that are kept, as rows of detections hold pictures of caps.
+A `Cached` object gives its value by `Cached.get`, wherever it is. The value is in memory at first.
+`Cached.put_aside` moves it to a `DiskCache`, and each `get` reads it again. Values may hold other
+cached ones, as rows of detections hold spectra of caps. The first values stay in memory.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ import numpy as np
 T = TypeVar("T")
 
 Place = tuple[int, int]
-"""Where on a shelf a thing begins and how long it is, bytes."""
+"""Where in the file a value begins and how long it is, bytes."""
 
 
-class Shelf:
-    """A file without a name; it goes when nothing that lies on it is held any more.
+class DiskCache:
+    """A temporary file without a name, deleted when no value in it is referenced any more.
 
     Parameters
     ----------
     room : int
-        How many things stay in memory all the same, the first ones: short clips need no file.
+        How many of the first values stay in memory: short clips need no file.
     """
 
     def __init__(self, room: int = 0) -> None:
@@ -38,9 +38,9 @@ class Shelf:
         self._file: IO[bytes] | None = None
 
     def put(self, thing: Any) -> Place | None:
-        """Write a thing to the file and say where it lies; None for the first, which stay.
+        """Write a value to the file and return its place; None for the first, which stay in memory.
 
-        Of things in it that lie on this shelf themselves, only where they lie is written.
+        Of values in it that lie in this cache themselves, only their place is written.
 
         Raises
         ------
@@ -64,68 +64,68 @@ class Shelf:
         return begin, size
 
     def read(self, place: Place) -> Any:
-        """Read the thing that lies at a place."""
+        """Return the value that lies at a place."""
         assert self._file is not None
         begin, size = place
         self._file.seek(begin)
         return _Unpacker(BytesIO(self._file.read(size)), self).load()
 
 
-class Kept(Generic[T]):
-    """A thing in memory that can be put aside, and had all the same.
+class Cached(Generic[T]):
+    """A value in memory that can be moved to a disk cache and read back.
 
     Parameters
     ----------
-    thing : object or Shelf
-        Itself or, if a place is given, the shelf on which it lies there.
+    thing : object or DiskCache
+        The value or, if a place is given, the cache that holds it there.
     place : (int, int), optional
     """
 
     __slots__ = ("_place", "_thing")
 
-    def __init__(self, thing: T | Shelf, place: Place | None = None) -> None:
+    def __init__(self, thing: T | DiskCache, place: Place | None = None) -> None:
         self._thing, self._place = thing, place
 
     def get(self) -> T:
-        """Give the thing; one that was put aside is read anew each time."""
+        """Return the value; one on disk is read again each time."""
         if self._place is None:
             return self._thing  # type: ignore[return-value]
         return self._thing.read(self._place)  # type: ignore[union-attr, no-any-return]
 
-    def put_aside(self, shelf: Shelf) -> None:
-        """Keep it on a shelf from now on; where there is no room for it, in memory as before."""
+    def put_aside(self, cache: DiskCache) -> None:
+        """Move the value to a cache; where the disk is full it stays in memory."""
         if self._place is not None:
             return
         with suppress(OSError):
-            place = shelf.put(self._thing)
+            place = cache.put(self._thing)
             if place is not None:
-                self._thing, self._place = shelf, place
+                self._thing, self._place = cache, place
 
-    def place_on(self, shelf: Shelf) -> Place | None:
-        """Where it lies on a shelf; None where it does not."""
-        return self._place if self._thing is shelf else None
+    def place_on(self, cache: DiskCache) -> Place | None:
+        """Return its place in a cache; None where it is not in it."""
+        return self._place if self._thing is cache else None
 
-    def __reduce__(self) -> tuple[type[Kept[T]], tuple[T]]:
-        return Kept, (self.get(),)
+    def __reduce__(self) -> tuple[type[Cached[T]], tuple[T]]:
+        return Cached, (self.get(),)
 
 
 class _Packer(pickle.Pickler):
-    """Writes things for a shelf: where those lie that are on it, all others as they are."""
+    """Writes values for a cache: those in it as places, all others as they are."""
 
-    def __init__(self, file: IO[bytes], shelf: Shelf) -> None:
+    def __init__(self, file: IO[bytes], cache: DiskCache) -> None:
         super().__init__(file, pickle.HIGHEST_PROTOCOL)
-        self._shelf = shelf
+        self._cache = cache
 
     def persistent_id(self, thing: Any) -> Place | None:
-        return thing.place_on(self._shelf) if isinstance(thing, Kept) else None
+        return thing.place_on(self._cache) if isinstance(thing, Cached) else None
 
 
 class _Unpacker(pickle.Unpickler):
     """Reads what a `_Packer` wrote."""
 
-    def __init__(self, file: IO[bytes], shelf: Shelf) -> None:
+    def __init__(self, file: IO[bytes], cache: DiskCache) -> None:
         super().__init__(file)
-        self._shelf = shelf
+        self._cache = cache
 
-    def persistent_load(self, place: Place) -> Kept[Any]:
-        return Kept(self._shelf, place)
+    def persistent_load(self, place: Place) -> Cached[Any]:
+        return Cached(self._cache, place)

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.vision.film.picture import Image
+from curlshot.vision.video.picture import Image
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ import av
 import numpy as np
 import pytest
 
-from curlshot.vision.film.clip import open_clip
-from curlshot.vision.film.fields import deinterlaced
+from curlshot.vision.video.deinterlace import deinterlaced
+from curlshot.vision.video.reader import open_video
 
 WIDTH, HEIGHT, FRAMES, STEP = 320, 96, 12, 6
 """Size, px, frames, and how far the bar goes from field to field, px."""
@@ -57,7 +57,7 @@ def test_frames_without_a_time_are_shown_when_they_were_decoded(tmp_path: Path) 
 
 @pytest.mark.parametrize("interlaced", [True, False])
 def test_a_picture_is_of_one_moment_its_first_field(tmp_path: Path, interlaced: bool) -> None:
-    frames = list(open_clip([write(tmp_path / "bar.mp4", interlaced)]))
+    frames = list(open_video([write(tmp_path / "bar.mp4", interlaced)]))
     assert [frame.index for frame in frames] == list(range(FRAMES))
     for frame in frames:
         assert frame.t == pytest.approx(frame.index / 25)

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from curlshot.config import VideoConfig
+from curlshot.data.measurement import Duplicate
 from curlshot.synthetic.video import write_video
-from curlshot.vision.film.clip import Clip, open_clip
-from curlshot.vision.optics.camera import Camera, carried
+from curlshot.vision.optics.camera import Camera
+from curlshot.vision.video.reader import Video, open_video
+from curlshot.vision.video.telecine import Telecine
 
 Image = NDArray[np.uint8]
 
@@ -29,15 +32,15 @@ def scene(n: int, noise: float = 0.0, pace: float = 3.0) -> list[Image]:
     return out
 
 
-def film(path: Path, pictures: Sequence[Image], fps: float) -> Clip:
+def film(path: Path, pictures: Sequence[Image], fps: float) -> Video:
     write_video(path, [(k / fps, picture) for k, picture in enumerate(pictures)], fps=fps)
-    return open_clip([path])
+    return open_video([path])
 
 
-def left(clip: Clip) -> list[int]:
+def left(clip: Video) -> list[int]:
     given = [frame.index for frame in clip]
-    assert sorted([*given, *clip.repeated]) == list(range(clip.passed))
-    return sorted(clip.repeated)
+    assert sorted([*given, *clip.duplicates]) == list(range(clip.decoded))
+    return sorted(clip.duplicates)
 
 
 @pytest.mark.parametrize("noise", [0.0, 3.0])
@@ -45,8 +48,8 @@ def test_of_pictures_told_twice_the_second_is_left_out(tmp_path: Path, noise: fl
     twice = [picture for picture in scene(30, noise) for _ in (0, 1)]
     clip = film(tmp_path / "a.mp4", twice, 50.0)
     assert left(clip)[:-1] == [*range(1, 58, 2)] or left(clip) == [*range(1, 58, 2)]
-    assert clip.repeated[31] == (pytest.approx(0.62), 30)
-    assert "pictures repeat the one before" in clip.warnings[0]
+    assert clip.duplicates[31] == (pytest.approx(0.62), 30)
+    assert "frames repeat the one before" in clip.warnings[0]
 
 
 def test_a_picture_that_stands_still_while_time_goes_on_is_told_once(tmp_path: Path) -> None:
@@ -79,17 +82,41 @@ def test_pictures_from_files_are_told_as_well(tmp_path: Path) -> None:
     paths = [tmp_path / f"{k:03}.png" for k in range(40)]
     for k, path in enumerate(paths):
         cv2.imwrite(str(path), scene(20, 2.0)[k // 2])
-    assert left(open_clip(paths, fps=50.0)) == [*range(1, 39, 2)]
+    assert left(open_video(paths, VideoConfig(fps=50.0))) == [*range(1, 39, 2)]
 
 
-def test_a_repeat_has_the_camera_of_what_it_shows_as_one_that_was_carried() -> None:
+def still(folder: Path) -> Video:
+    """A clip of one picture."""
+    cv2.imwrite(str(folder / "still.png"), scene(1)[0])
+    return open_video([folder / "still.png"])
+
+
+def test_a_repeat_has_the_camera_of_what_it_shows_as_one_that_was_carried(tmp_path: Path) -> None:
     matrix = np.diag([100.0, -100.0, 1.0])
     cameras = [Camera(k, 0.04 * k, matrix + k, (320, 180)) for k in (0, 2)]
-    after = carried(cameras, {1: (0.03, 0), 5: (0.2, 4)})
+    clip = still(tmp_path)
+    clip.duplicates = {1: Duplicate(0.03, 0), 5: Duplicate(0.2, 4)}
+    after = clip.finish(cameras)
     assert [(c.frame, c.t, c.found) for c in after] == [
         (0, 0, True),
         (1, 0.03, False),
         (2, 0.08, True),
     ]
-    assert [c.frame for c in carried(cameras, {4: (0.16, 3), 3: (0.12, 2)})] == [0, 2, 3, 4]
+    clip.duplicates = {4: Duplicate(0.16, 3), 3: Duplicate(0.12, 2)}
+    assert [c.frame for c in clip.finish(cameras)] == [0, 2, 3, 4]
     assert np.array_equal(after[1].homography, cameras[0].homography)
+
+
+def test_cameras_get_the_times_at_which_frames_were_taken(tmp_path: Path) -> None:
+    """A frame that the first pass took for new repeats another: it has no camera of its own."""
+    matrix = np.diag([100.0, -100.0, 1.0])
+    cameras = [Camera(k, 0.04 * k, matrix + k, (320, 180)) for k in (0, 2, 3)]
+    clip = still(tmp_path)
+    assert clip.retime(cameras) == tuple(cameras)
+    clip.duplicates = {2: Duplicate(0.08, 0)}
+    clip.telecine = Telecine(20.0, 25.0, {0: -0.01, 1: 0.04, 3: 0.13}, clip.duplicates)
+    assert [(c.frame, c.t) for c in clip.retime(cameras)] == [(0, -0.01), (3, 0.13)]
+    finished = clip.finish(cameras)
+    assert [(c.frame, c.t) for c in finished] == [(0, -0.01), (2, 0.08), (3, 0.13)]
+    assert np.array_equal(finished[1].homography, cameras[0].homography)
+    assert np.array_equal(finished[2].homography, cameras[2].homography)

@@ -4,16 +4,17 @@ from pathlib import Path
 
 import numpy as np
 
-from curlshot.vision.film.clip import open_clip
+from curlshot.config import VideoConfig
+from curlshot.vision.video.reader import open_video
 
 
 def test_a_rate_for_a_video_is_ignored_aloud(shared: Path) -> None:
-    clip = open_clip([shared / "clips" / "collision-pucks.mp4"], fps=10)
+    clip = open_video([shared / "clips" / "collision-pucks.mp4"], VideoConfig(fps=10))
     assert "its own times" in clip.warnings[0]
 
 
 def test_real_clip_with_title_cards(shared: Path) -> None:
-    clip = open_clip([shared / "clips" / "collision-pucks.mp4"], frames=(2, 32))
+    clip = open_video([shared / "clips" / "collision-pucks.mp4"], VideoConfig(frames=(2, 32)))
     frames = list(clip)
     assert len(frames) == 31
     assert clip.size == (320, 240)
