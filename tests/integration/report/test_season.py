@@ -106,8 +106,8 @@ def test_a_shot_that_is_there_twice_counts_once(
     said = capsys.readouterr().out
     assert "two   the same shot as one: counted once" in said and "of 2 shots" in said
     assert pd.read_csv(tmp_path / "out" / "shots.csv")["shot"].tolist() == ["one", "three"]
-    shots, means = season({"a": BARE, "b": BARE})  # of which nothing is known that could be alike
-    assert len(shots) == 2 and means["restitution"].value is None
+    both = season({"a": BARE, "b": BARE})  # of which nothing is known that could be alike
+    assert len(both.shots) == 2 and both.means["restitution"].value is None
 
 
 def test_one_bad_clip_does_not_stop_the_others(
@@ -119,7 +119,7 @@ def test_one_bad_clip_does_not_stop_the_others(
         shot = replace(SHOT, friction=Friction(0.01 + len(clips[0].stem) / 1e4, 0.001))
         return Run(pd.DataFrame(), None, shot, pd.DataFrame(), out)
 
-    monkeypatch.setattr(pipeline, "run", run_or_not)
+    monkeypatch.setattr("curlshot.season.batch.run", run_or_not)
     for name in ("good.mp4", "bad.mp4", "other.mp4"):
         (tmp_path / name).touch()
     clips = [str(tmp_path / name) for name in ("good.mp4", "bad.mp4", "other.mp4")]

@@ -28,7 +28,7 @@ def test_discs_in_one_another_are_refused(size: float) -> None:
 def test_a_point_of_the_edge_is_no_stone() -> None:
     a = shot().query("stone == 'A'")
     edge = a.assign(stone="edge", x=a["x"] + 0.14)
-    with pytest.raises(InputError, match=r"A and edge come within 14 cm .* \(--names\)"):
+    with pytest.raises(InputError, match=r"A and edge come within 14 cm .* \(`names`\)"):
         refuse_no_discs(pd.concat([a, edge]), RADIUS, "a.txt")
 
 

@@ -29,7 +29,7 @@ def test_first_tab_with_marks_is_used_unless_another_is_named(tmp_path: Path) ->
     path = put(tmp_path, archive(content), "tabs.trz")
     found = read_table([path])
     assert set(found.detections["stone"]) == {"red", "blue"}
-    assert any("a, b, c" in text and ": b (--tab)" in text for text in found.warnings)
+    assert any("a, b, c" in text and ": b (`tab`)" in text for text in found.warnings)
     assert set(read_table([path], tab="c").detections["stone"]) == {"green"}
     with pytest.raises(InputError, match="no tab d; there is a, b, c"):
         read_table([path], tab="d")

@@ -38,7 +38,7 @@ def test_steps_of_a_clip_and_their_times() -> None:
 def test_a_project_without_marks_says_what_it_has_and_what_else_can_be_done() -> None:
     timing = Timing(0, 1, 9, 0.0, 0.04, np.empty(0))
     bare = Project("a.trk", (), SYSTEM, SYSTEM, timing, "m", ("a.mp4",), others=("Vector",))
-    with pytest.raises(InputError, match=r"^a.trk: no point mass .*Vector.*--clip"):
+    with pytest.raises(InputError, match=r"^a.trk: no point mass .*Vector.*`clip`"):
         bare.file()
 
 

@@ -52,7 +52,7 @@ def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
         write_results(shot, tmp_path / parent / "shot" / "results.json")
     found = find_runs([tmp_path / "p" / "shot", tmp_path / "q" / "shot", tmp_path / "p" / "shot"])
     assert list(found) == ["p-shot", "q-shot"]
-    assert season(found)[0]["shot"].tolist() == ["p-shot", "q-shot"]
+    assert season(found).shots["shot"].tolist() == ["p-shot", "q-shot"]
 
 
 def test_folder_without_runs_is_refused(tmp_path: Path) -> None:
