@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -350,16 +350,24 @@ class Run:
         """
         from curlshot.report.write import WRITTEN, write_run
 
-        path = check_folder(folder)
         if self.measurement is None:
-            raise InputError(f"{path}: a loaded run is not written again; copy its folder")
-        own = {path.resolve() / name for name in WRITTEN}
-        lost = [file for file in self.measurement.files if file.resolve() in own]
-        if lost:
-            raise InputError(f"{lost[0]}: would be overwritten; name another folder")
+            raise InputError(f"{folder}: a loaded run is not written again; copy its folder")
+        path = check_target(folder, self.measurement.files)
         with staged(path, replaces=WRITTEN) as stage:
             write_run(stage, self, progress)
         return replace(self, out=path)
+
+
+def check_target(folder: str | Path, files: Sequence[Path]) -> Path:
+    """Return the folder of a run; refuse one that cannot be written or that holds an input."""
+    from curlshot.report.write import WRITTEN
+
+    path = check_folder(folder)
+    own = {path.resolve() / name for name in WRITTEN}
+    lost = [file for file in files if file.resolve() in own]
+    if lost:
+        raise InputError(f"{lost[0]}: would be overwritten; name another folder")
+    return path
 
 
 def _check_known(what: str, given: object, known: Any) -> None:

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from curlshot.config import Config, refuse_clip_settings
 from curlshot.data.convert import check_conversion, write_converted
 from curlshot.data.errors import SceneError
-from curlshot.data.files import check_folder
 from curlshot.data.importers import are_tables, import_tracks
 from curlshot.data.inputs import find_inputs, named, sample_clip
 from curlshot.data.measurement import Measurement
 from curlshot.data.progress import Progress, no_progress
-from curlshot.outcome import Run
-
-if TYPE_CHECKING:
-    pass
+from curlshot.outcome import Run, check_target
 
 Inputs = str | Path | Sequence[str | Path]
 """A video, pictures (files, a folder or a glob), or tables of tracks."""
@@ -64,10 +60,10 @@ def run(
     >>> print(curlshot.run("still.csv").restitution)
     — (no stone moves: restitution and friction are not identifiable)
     """
-    config = config.replace(**settings)
+    config, files = config.replace(**settings), find_inputs(named(inputs) or sample_clip())
     if out is not None:
-        check_folder(out)
-    measured = measure(named(inputs) or sample_clip(), config, progress)
+        check_target(out, files)  # before the work, not after
+    measured = measure(files, config, progress)
     done = analyse(measured, config, progress)
     return done if out is None else done.report(out, progress)
 
@@ -166,6 +162,7 @@ def analyse(
     import pandas as pd
 
     from curlshot.data.tracks import simulation_table, teams, with_measured
+    from curlshot.physics import steps
     from curlshot.physics.cautions import cautions
     from curlshot.physics.estimate import estimate
     from curlshot.physics.kalman import smooth
@@ -174,21 +171,20 @@ def analyse(
     from curlshot.physics.prediction.forecast import predict
     from curlshot.physics.prediction.replay import simulate_measured
     from curlshot.physics.prediction.throws import along_sheet, first_hit
-    from curlshot.physics.steps import check_masses, gather_results, laws_to_assume, times_of_hits
 
     detections, radius = measured.detections, config.stones.radius
     if detections.empty:
         raise SceneError(f"{measured.files[0]}: no stone was found; {_way_out(config)}")
     progress("physics", 0, 1)
     stones = list(detections["stone"].unique())
-    masses = check_masses(config.stones.masses, stones) or measured.masses or None
+    masses = steps.check_masses(config.stones.masses, stones) or measured.masses or None
 
     contacts = detect_hits(detections, radius)
     fit = estimate(detections, contacts, radius=radius, masses=masses)
-    hits = times_of_hits(contacts, fit.collisions)
+    hits = steps.times_of_hits(contacts, fit.collisions)
     tracks = smooth(detections, hits, radius=radius, masses=masses, duplicates=measured.duplicates)
     replay = simulate_measured(tracks, fit, radius=radius, masses=masses)
-    laws = laws_to_assume(radius, config.physics.restitution, config.physics.friction)
+    laws = steps.laws_to_assume(radius, config.physics.restitution, config.physics.friction)
     predictions = predict(detections, tracks, fit, radius=radius, masses=masses, laws=laws)
     samples = sample_posterior(fit, config.physics.samples, np.random.default_rng(0))
 
@@ -204,7 +200,7 @@ def analyse(
         *((NO_SAMPLES,) if config.physics.samples and samples is None else ()),
         *cautions(measured, tracks, fit.friction, sheet),
     )
-    results = gather_results(
+    results = steps.gather_results(
         measured,
         fit,
         warnings=tuple(dict.fromkeys(warnings)),

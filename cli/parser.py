@@ -200,7 +200,7 @@ def _convert(commands: Any) -> None:
         "                                                   a Tracker project over the clip\n"
         "  curlshot convert shot-curlshot/tracks.csv shot.trz --over shot.mp4\n"
         "                                                   the same, with the clip in the file\n"
-        "  curlshot convert season/*.trk .csv               each to a table beside it\n"
+        "  curlshot convert season/*.trk .csv               each to a table in its folder\n"
         "  curlshot convert season/*.trz tables/.csv        or in another folder\n",
     )
     parser.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")

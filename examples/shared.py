@@ -38,7 +38,7 @@ fits = []
 for detections in runs or [made_up(1.5, 0.05), made_up(2.0, -0.08)]:
     found = estimate(detections, detect_hits(detections, RADIUS), radius=RADIUS)
     if found.shot_fit is None:
-        sys.exit(f"a shot that cannot be fitted as a whole: {found.by_shot_fit.note}")
+        sys.exit(f"no shot fit: {found.by_shot_fit.note}")
     fits.append(found.shot_fit)
     print("by itself: e =", found.shot_fit["restitution"], " μ =", found.shot_fit["friction"])
 

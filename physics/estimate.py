@@ -228,7 +228,7 @@ def _global(fit: ShotFit | None, doubt: str | None) -> Method:
 def _curl(fit: ShotFit | None, doubt: str | None) -> NotedEstimate:
     """Turn of the paths at 1 m/s, rad/s, where it shows."""
     if fit is None:
-        return NotedEstimate(note=doubt or "the whole shot is not fitted")
+        return NotedEstimate(note=doubt or "no shot fit")
     if "turn" in fit.fixed:
         return NotedEstimate(note="not identifiable: the shot is explained as well without curl")
     return NotedEstimate(*_pair(fit["turn"]))

@@ -168,7 +168,7 @@ def page_tables(
             tables.ice_table(results),
         ),
         _scores(results),
-        _foretold(results),
+        _predicted(results),
     ]
     return [table for table in made if len(table.frame)]
 
@@ -231,7 +231,7 @@ def _scores(results: Results) -> Table:
     )
 
 
-def _foretold(results: Results) -> Table:
+def _predicted(results: Results) -> Table:
     known = {name: guess for name, guess in results.predictions.items() if guess.rmse is not None}
     how = next(map(assumed, known.values()), "")
     return _off(

@@ -177,7 +177,7 @@ def summary(
                 guess.sd_at_comparison,
                 unit,
             )
-            lines += _each(f"{'at the end':24s}", guess.rest_error, guess.rest_sd, unit)
+            lines += _each(f"{'at the end':26s}", guess.rest_error, guess.rest_sd, unit)
             lines += [f"            {guess.note}"] if guess.note else []
     notes = [guess.note for guess in results.predictions.values()]
     if all(guess.rmse is None for guess in results.predictions.values()) and any(notes):

@@ -79,7 +79,7 @@ def test_coach(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
     text = said("coach", capsys, sample.out)
     assert "ft/s" in text
     assert " m/s" not in text
-    assert "first seen 12.8 ft past it" in text
+    assert "first detected 12.8 ft past it" in text
     assert "shot stone: B" in text
     assert "B: 2.2 ft from the tee" in text
     assert "nan" not in text

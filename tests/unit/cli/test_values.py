@@ -4,8 +4,6 @@ import argparse
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from curlshot.cli import values
 from curlshot.data.limits import FRACTION, FRICTION, OFFSET, POSITIVE, RADIUS, SAMPLES
@@ -73,17 +71,3 @@ def test_what_is_meant_is_read(read, text: str, value) -> None:
 def test_what_makes_no_sense_is_refused_with_what_was_expected(read, text: str, said: str) -> None:
     with pytest.raises(argparse.ArgumentTypeError, match=said):
         read(text)
-
-
-@given(
-    st.sampled_from(
-        [values.within(POSITIVE), values.amount, values.speed, values.whole(SAMPLES),
-         values.throw_sd, values.frame_range, values.stick, values.house, values.mass, values.pair]
-    ),
-    st.text(alphabet="0123456789.,:=x-+eEnaif ²٣", max_size=12),
-)  # fmt: skip
-def test_any_text_is_read_or_refused(read, text: str) -> None:
-    try:
-        read(text)
-    except argparse.ArgumentTypeError as refusal:
-        assert repr(text) in str(refusal) or "expected" not in str(refusal)

@@ -201,6 +201,29 @@ def test_frames_in_which_nothing_was_measured_have_states_where_they_are_wanted(
     assert np.allclose(kept[["x", "y"]], without[["x", "y"]], atol=1e-5)
 
 
+def test_duplicates_of_the_last_frame_have_states_too() -> None:
+    motion = hit_motion(1.0, 0.05)
+    seen = watch(motion, np.random.default_rng(8), sd=0.002)
+    hits = detect_hits(seen, RADIUS)
+    without = smooth(seen, hits, radius=RADIUS)
+    last, t = int(seen["frame"].max()), float(seen["t"].max())
+    # The second repeats the first, and the third another frame than the last.
+    held = {last + k: Duplicate(t + 0.04 * k, last + (k > 1)) for k in (1, 2)}
+    other = {last + 3: Duplicate(t + 0.12, last - 1)}
+    tracks = smooth(seen, hits, radius=RADIUS, duplicates=held | other)
+    added = tracks[tracks["frame"] > last]
+    assert added.groupby("stone")["frame"].agg(list).tolist() == [[last + 1, last + 2]] * 2
+    assert (added["seen"] == 0).all()
+    before = tracks[tracks["frame"] <= last].reset_index(drop=True)
+    pd.testing.assert_frame_equal(before, without, rtol=1e-6, atol=1e-9)
+    for _, rows in tracks.groupby("stone"):
+        final, *later = rows[["t", "x", "y", "vx", "vy", "sd_y"]].to_numpy()[-3:]
+        for row in later:
+            moved = (row[0] - final[0]) * final[3:5]
+            np.testing.assert_allclose(row[1:3], final[1:3] + moved, atol=0.001)
+            assert row[5] >= final[5]
+
+
 def test_a_way_too_short_to_be_seen_twice_is_told_by_its_ends() -> None:
     motion = hit_motion(1.8, 0.0, after=1.0, others=[Start(0.03, 2 * RADIUS + 0.07)])
     first, second = motion.hits

@@ -33,7 +33,7 @@ def test_predictions_stand_beside_what_was_fitted(shot):
     (row,) = made["predictions"].frame.to_dict("records")
     assert made["predictions"].columns[2].parts(row) == ("31", "50")
     assert "is known of μ beforehand, with e assumed." in made["predictions"].note
-    assert "as fitted" in made["models"].note
+    assert "shot fit" in made["models"].note
     assert "start of the shot fit" in made["table_4_point-mass"].note
     other = page_tables(replace(results, joint_estimate=None, predictions={}), shot.tracks)
     alone = {table.name: table for table in other}

@@ -31,7 +31,7 @@ def test_why_a_restitution_is_not_told_says_where_a_stone_was_seen() -> None:
     hits = estimate_locally(seen, detect_hits(seen, RADIUS), radius=RADIUS).collisions
     assert [hit.note for hit in hits] == [
         None,
-        "restitution unknown: B is seen once between two hits",
+        "restitution unknown: B is measured once between two hits",
     ]
 
 

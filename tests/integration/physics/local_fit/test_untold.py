@@ -50,7 +50,7 @@ def test_stone_that_light_moves_a_little_says_nothing() -> None:
         (t > 2.0)[:, None], glide(places["C"][0], np.array([0.3, 0.0]), t - 2.0), places["C"][0]
     )
     (text,) = said(table(t, places, {}))
-    assert "the motion of C changes at 2.0" in text
+    assert "the velocity of C changes at 2.0" in text
 
 
 @pytest.mark.parametrize("step", [0.4, 0.6, 1.0])

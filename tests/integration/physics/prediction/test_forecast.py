@@ -292,5 +292,5 @@ def test_hits_that_are_foretold_and_did_not_happen_are_named() -> None:
     moved.loc[moved["stone"] == "C", "x"] -= aside.x  # into the way of the stone that is hit
     moved.loc[moved["stone"] == "C", "y"] += 0.7 - aside.y
     wrong = misled(moved, seen)["frictional"]
-    assert wrong.note == "as foretold, B and C hit each other, which they did not"
+    assert wrong.note == "in the prediction, B and C hit each other; in the clip they did not"
     assert (wrong.rmse or 0.0) > 3 * (right.rmse or 1.0)

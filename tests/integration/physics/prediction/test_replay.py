@@ -153,7 +153,7 @@ def test_stones_that_grip_each_other_are_simulated_so() -> None:
     assert frictional is not None
     assert point_mass is not None
     assert frictional < min(0.02, 0.5 * point_mass)
-    assert "as in the fit" in (scores["frictional"].note or "")
+    assert "as in the shot fit" in (scores["frictional"].note or "")
     local = replace(estimates, shot_fit=None)
     tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     scores = simulate_measured(tracks, local, radius=RADIUS).scores
@@ -168,7 +168,7 @@ def test_what_the_fit_of_the_whole_shot_tells_is_not_said_to_be_assumed() -> Non
     assert found.shot_fit is not None
     e = found.shot_fit["restitution"].value or 0.0
     done = simulate_measured(tracks, found, radius=RADIUS)
-    said = f"simulation: restitution not measured: {e:.2g}, as in the fit of the whole shot"
+    said = f"simulation: restitution not measured: {e:.2g}, as in the shot fit"
     assert done.warnings == (said,)
     done = simulate_measured(tracks, replace(found, shot_fit=None), radius=RADIUS)
     assert done.warnings == ("simulation: restitution not measured, 0.83 assumed",)

@@ -28,20 +28,20 @@ MU, G = 0.0109, 9.81
 CERTAIN = np.zeros(5)
 
 
-def draws(shot: Shot, uncertainty: InitialUncertainty, count: int) -> list[Simulation]:
+def draws(shot: Shot, doubt: InitialUncertainty, count: int) -> list[Simulation]:
     rng = np.random.default_rng(0)
-    return simulated(drawn(shot, uncertainty, rng) for _ in range(count))
+    return simulated(drawn(shot, doubt, rng) for _ in range(count))
 
 
 def test_a_glide_is_as_uncertain_as_its_closed_form_says() -> None:
     # Stopping distance v² / (2 μ g): 2 sd(v) / v and sd(μ) / μ of it.
     shot = Shot((StoneStart("A", 0.0, 0.0, 0.0, 2.0),), ice=Constant(MU), curl=NoCurl())
     way = 2.0**2 / (2 * MU * G)
-    for uncertainty, relative in (
+    for doubt, relative in (
         (InitialUncertainty({"A": np.array([0, 0, 0, 0.01, 0])}, {}), 2 * 0.01 / 2.0),
         (InitialUncertainty({"A": CERTAIN}, {}, friction=0.01), 0.01),
     ):
-        end = path_spread(draws(shot, uncertainty, 200), np.array([0.0, 30.0])).iloc[-1]
+        end = path_spread(draws(shot, doubt, 200), np.array([0.0, 30.0])).iloc[-1]
         assert end["sd_y"] == pytest.approx(way * relative, rel=0.15)
         assert end["sd_x"] == pytest.approx(0.0, abs=1e-9)
 
@@ -126,14 +126,12 @@ def test_what_two_places_share_moves_both_and_leaves_the_hit_as_it_is() -> None:
     size = np.array([0.005, 0.005, 0, 0, 0])
     states, common = {"A": size, "B": size}, {name: np.full(2, 0.005) for name in "AB"}
     spread = {}
-    for name, uncertainty in (
+    for name, doubt in (
         ("apart", InitialUncertainty(states, {})),
         ("shared", InitialUncertainty(states, {}, shared=common)),
     ):
         first, last = (
-            path_spread(draws(shot, uncertainty, 200), np.array([0.0, 3.0])).query("t == @t")[
-                "sd_x"
-            ]
+            path_spread(draws(shot, doubt, 200), np.array([0.0, 3.0])).query("t == @t")["sd_x"]
             for t in (0.0, 3.0)
         )
         assert first.to_numpy() == pytest.approx([0.005, 0.005], rel=0.2)
