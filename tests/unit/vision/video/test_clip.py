@@ -243,7 +243,7 @@ def test_bad_pictures_are_left_out_with_a_warning(tmp_path: Path) -> None:
     assert [frame.t for frame in clip] == pytest.approx([0.04, 0.12, 0.2])
     assert "25 a second assumed" in clip.warnings[0]
     assert "not a readable picture" in clip.warnings[1]
-    assert "not of the size" in clip.warnings[3]
+    assert "differs in size" in clip.warnings[3]
     for path in paths:
         path.write_bytes(b"")
     with pytest.raises(InputError, match="not a readable picture"):
