@@ -37,7 +37,7 @@ RENAMED: Mapping[str, Mapping[str, str]] = {
             "rise_a",
             "rise_b",
         )
-    },  # fmt: skip
+    },
     "simulation.csv": {},
     "results.json": {
         "laws": "joint_estimate",
@@ -52,7 +52,7 @@ RENAMED: Mapping[str, Mapping[str, str]] = {
         "certain": "significant",
         "left_out": "downweighted",
         "size": "rms_ratio",
-    },  # fmt: skip
+    },
     "whatif.json": {},
     "season.json": {},
     "shots.csv": {},
