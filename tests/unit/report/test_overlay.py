@@ -102,8 +102,8 @@ def test_nothing_is_left_of_a_failure(tmp_path, shot):
     class Broken:
         size, whole_size, fps, expected = SIZE, SIZE, 25.0, 5
 
-        def __iter__(self):
-            yield from open_video(pictures(tmp_path, 2))
+        def uncut(self):
+            yield from open_video(pictures(tmp_path, 2)).uncut()
             raise OSError("the disk went away")
 
     folder = tmp_path / "out"
