@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
@@ -15,6 +16,7 @@ from curlshot.tests.helpers.vision.proof import (
     proved,
     seen,
 )
+from curlshot.vision.optics.pose import project
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
 from curlshot.vision.sheet.proof import is_house, stands_alone, worth
@@ -59,3 +61,16 @@ def test_bare_ice_between_the_paint_or_the_lines_prove_it(cross: bool) -> None:
     assert proved(drawn(HOUSE, cross=cross))
     painted = ((1.829, BLUE), (1.2135, (60, 160, 60)), (0.619, RED))
     assert proved(drawn(painted, cross=cross)) == cross
+
+
+def test_a_circle_more_than_a_house_has_makes_a_target(low: tuple[Image, HouseFit]) -> None:
+    picture, found = low
+    angle = np.linspace(0, 2 * np.pi, 200)
+    ring = 1.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    size = (picture.shape[1], picture.shape[0])
+    line = project(ring, found.view.vector, found.rig, size)
+    target = picture.copy()
+    cv2.polylines(target, [np.round(line).astype(np.int32)], True, (30, 200, 230), 6)
+    assert not is_house(target, found.evidence, found.view, found.rig)
+    assert not stands_alone(target, found.evidence, found.view, found.rig)
+    assert stands_alone(picture, found.evidence, found.view, found.rig)
