@@ -19,7 +19,7 @@ from curlshot.config import Config
 from curlshot.data.errors import CurlshotError, InputError
 from curlshot.data.files import staged
 from curlshot.data.inputs import find_inputs
-from curlshot.data.results_file import read_results
+from curlshot.data.results_file import SCHEMA, read_results
 from curlshot.data.tracks import MEASURED_AS, TRACK_COLUMNS
 from curlshot.outcome import Run
 from curlshot.report.summary import summary
@@ -127,7 +127,7 @@ def test_run_writes_the_whole_contract(sample: Run) -> None:
     assert set(simulation["model"]) == {"point-mass", "rigid-body", "frictional"}
     assert read_results(sample.out / "results.json") == sample.results
     raw = json.loads((sample.out / "results.json").read_text())
-    assert raw["schema"] == 1
+    assert raw["schema"] == SCHEMA
     assert raw["restitution"]["value"] == sample.results.restitution.value
     teams = raw["teams"]
     assert teams["A"] == teams["C"] == teams["D"] != teams["B"] == teams["E"] == teams["F"]
@@ -276,7 +276,8 @@ def test_help_goes_into_a_file_without_greek_letters() -> None:
 
 def test_help_loads_nothing_heavy() -> None:
     code = (
-        "import sys, pipeline\npipeline.command_line('').format_help()\nprint(sorted(sys.modules))"
+        "import sys\nfrom curlshot.cli.parser import command_line\n"
+        "command_line('').format_help()\nprint(sorted(sys.modules))"
     )
     done = in_python(code)
     for heavy in ("numpy", "pandas", "cv2", "scipy", "matplotlib", "av", "multiprocessing"):
@@ -496,7 +497,7 @@ def test_a_terminal_without_greek_letters_gets_its_answer(tmp_path: Path) -> Non
 def test_a_clip_is_tracked_without_what_takes_long_to_load(tmp_path: Path) -> None:
     clip = str(pipeline.sample_clip())
     code = (
-        "import sys\nfrom curlshot import pipeline\n"
+        "import sys\nfrom curlshot.cli.main import main\n"
         f"main(['track', {clip!r}, '--frames', '0:9', '-q', '-o', {str(tmp_path)!r}])\n"
         "print({'pandas', 'scipy', 'filterpy', 'matplotlib'} & sys.modules.keys() or 'none')"
     )
