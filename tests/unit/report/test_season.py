@@ -125,7 +125,7 @@ def test_friction_below_zero_is_named(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["season", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
     warnings = [line for line in capsys.readouterr().out.splitlines() if "warning" in line]
     assert len(warnings) == 1
-    assert "bad-one: μ = −0.0040 ± 0.0010 cannot be" in warnings[0]
+    assert "bad-one: μ = −0.0040 ± 0.0010 is impossible" in warnings[0]
 
 
 def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
