@@ -160,6 +160,12 @@ class VideoConfig(_Section):
         Whether the clip of a Tracker project is measured, not what is marked in it.
     tab : str, optional
         Tab of a Tracker project that has several.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.VideoConfig(fps=30.0, frames=(10, None)).frames
+    (10, None)
     """
 
     fps: float | None = setting(
@@ -199,6 +205,12 @@ class CameraConfig(_Section):
     InputError
         More than one of stick, house and camera, or a height beside one that tells where the
         camera is.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.CameraConfig(camera_height=6.4).camera_height
+    6.4
     """
 
     stick: tuple[float, float, float, float, float] | None = setting(
@@ -241,6 +253,12 @@ class StonesConfig(_Section):
         Radius of the discs, m.
     masses : mapping of str to float
         Masses by stone, in any unit, where they are not all equal.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.StonesConfig().radius
+    0.1455
     """
 
     radius: float = setting(STONE.radius, "radius of the discs", RADIUS.check, "m")
@@ -319,6 +337,12 @@ class TablesConfig(_Section):
         Names of stones to names of tracks; empty for all tracks by their own names.
     angles : mapping of str to Path
         Tables of the angles of stones, by stone.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.Config(tables=curlshot.TablesConfig(length_unit="cm")).tables.length_unit
+    'cm'
     """
 
     length_unit: str | None = setting(None, "unit of lengths in tables", _one_of(LENGTH_UNITS))
@@ -347,6 +371,12 @@ class PhysicsConfig(_Section):
         What predictions assume; values of the literature by default.
     samples : int
         Draws of restitution and frictions from the posterior of the shot.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.PhysicsConfig(friction=0.012).friction
+    0.012
     """
 
     restitution: float | None = setting(
@@ -372,6 +402,12 @@ class ReportConfig(_Section):
         Whether the annotated clip is written.
     units : str
         Unit of what coaches read: m or ft. All else is SI.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.ReportConfig(units="ft").overlay
+    True
     """
 
     overlay: bool = setting(True, "write the annotated clip", _YES_NO, option="--no-overlay")

@@ -12,15 +12,13 @@ from curlshot.data.limits import (
     FRICTION,
     HEIGHT,
     MOST_THROWS,
+    OFFSET,
     POSITIVE,
     RADIUS,
     SAMPLES,
-    Limits,
 )
 from curlshot.data.sheet import STONE
 from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS
-
-OFFSETS = Limits(-5.0, 5.0, "a distance in metres, -5 to 5")
 
 
 def radius_option(parser: argparse.ArgumentParser) -> None:
@@ -122,7 +120,7 @@ def what_if_options(parser: argparse.ArgumentParser) -> None:
     )
     change.add_argument(
         "--aim-offset",
-        type=values.within(OFFSETS),
+        type=values.within(OFFSET),
         default=0.0,
         metavar="METRES",
         help="shift the path of the thrown stone to its left, or right if negative, m",

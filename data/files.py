@@ -79,7 +79,7 @@ def relative_path(path: Path, folder: Path) -> str:
         return path.resolve().as_posix()
 
 
-def check_folder(out: str | Path, how: str = " with -o") -> Path:
+def check_folder(out: str | Path, how: str = " with `out`") -> Path:
     """Refuse a bad place for results before an hour of work, not after; `how` to name another."""
     folder = Path(out)
     there = next(part for part in (folder, *folder.parents) if part.exists())
@@ -140,5 +140,5 @@ def _hidden(folder: Path) -> tempfile.TemporaryDirectory[str]:
         )
     except OSError as error:
         raise InputError(
-            f"{folder}: cannot be written ({error.strerror}); name another folder with -o"
+            f"{folder}: cannot be written ({error.strerror}); name another folder with `out`"
         ) from None

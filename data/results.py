@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from curlshot.data.estimates import Estimate as Estimate
 from curlshot.data.estimates import Friction as Friction
 from curlshot.data.estimates import Glide as Glide
+from curlshot.data.estimates import NotedEstimate as NotedEstimate
 from curlshot.data.sheet import STONE
 
 
@@ -18,13 +19,6 @@ class JointEstimate:
     names: tuple[str, ...]
     values: tuple[float, ...]
     cov: tuple[tuple[float, ...], ...]
-
-
-@dataclass(frozen=True)
-class NotedEstimate(Estimate):
-    """An estimate with a ``note``: why there is no value, or how far it is reliable."""
-
-    note: str | None = None
 
 
 @dataclass(frozen=True)
@@ -132,6 +126,13 @@ class Hit:
     ``stone_friction`` (``note_stone_friction``).
     ``momentum_residual`` is |Σv' − Σv| / |Σv| (masses as given). ``energy_lost`` is the
     fraction of the translational kinetic energy that is lost.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> hit = curlshot.Hit(1.2, 0.01, ("A", "B"), (0.0, -1.0), 0.83, 0.02, {}, {})
+    >>> print(hit.e)
+    0.830 ± 0.020
     """
 
     t: float
@@ -149,6 +150,11 @@ class Hit:
     stderr_stone_friction: float | None = None
     note: str | None = None
     note_stone_friction: str | None = None
+
+    @property
+    def e(self) -> NotedEstimate:
+        """The coefficient of restitution, or why it is unknown."""
+        return NotedEstimate(self.restitution, self.stderr, self.note)
 
     @property
     def earliest(self) -> float:

@@ -15,6 +15,9 @@ Floats = NDArray[np.float64]
 QUANTILES = (0.025, 0.16, 0.5, 0.84, 0.975)
 """Quantiles of the summary."""
 
+NO_SAMPLES = "no samples: neither restitution nor friction is identifiable"
+"""Warning of a shot of which samples were asked for and there are none."""
+
 BATCHES = 100
 """Batches of draws among which those that can be must be found."""
 

@@ -7,16 +7,20 @@ import sys
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-from curlshot import pipeline
 from curlshot.cli.threads import use_one_thread
-from curlshot.outcome import Run
-from curlshot.tests.helpers.report.browser import Browser
-from curlshot.tests.helpers.report.shot import Shot, make_shot
 
-use_one_thread()  # the suite has a process for each core: more threads only wait for each other
+if TYPE_CHECKING:
+    from curlshot.outcome import Run
+    from curlshot.tests.helpers.report.browser import Browser
+    from curlshot.tests.helpers.report.shot import Shot
+
+# The suite has a process for each core: more threads only wait for each other. NumPy reads the
+# limits when it is loaded, so nothing above may load it.
+use_one_thread()
 
 ROOT = Path(__file__).resolve().parents[1]
 KINDS = ("unit", "integration", "golden", "property")
@@ -44,6 +48,8 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> Run:
         fcntl.flock(lock, fcntl.LOCK_EX)
         kept = shared / "sample.pickle"
         if not kept.exists():
+            from curlshot import pipeline
+
             run = pipeline.run(out=shared / "sample" / "out")
             kept.write_bytes(pickle.dumps(run))
         return pickle.loads(kept.read_bytes())
@@ -52,12 +58,16 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> Run:
 @pytest.fixture(scope="session")
 def shot() -> Shot:
     """Tracks and results of a shot in closed form."""
+    from curlshot.tests.helpers.report.shot import make_shot
+
     return make_shot()
 
 
 @pytest.fixture(scope="session")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     """A Chromium without a window."""
+    from curlshot.tests.helpers.report.browser import Browser
+
     with Browser(tmp_path_factory.mktemp("profile")) as browser:
         yield browser
 

@@ -20,8 +20,19 @@ MAY_IMPORT = {
     "report": {"data", "config", "physics", "vision", "outcome"},
     "outcome": {"data", "config", "physics", "report"},
     "pipeline": {"data", "config", "physics", "vision", "outcome"},
+    "simulated": {"data", "config", "physics", "report", "outcome"},
     "season": {"data", "config", "physics", "report", "outcome", "pipeline"},
-    "cli": {"data", "config", "physics", "vision", "report", "outcome", "pipeline", "season"},
+    "cli": {
+        "data",
+        "config",
+        "physics",
+        "vision",
+        "report",
+        "outcome",
+        "pipeline",
+        "simulated",
+        "season",
+    },
 }
 """The rooms that each room may import. `outcome` and `report` are one floor: a run draws itself."""
 ORDER = {

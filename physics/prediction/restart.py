@@ -41,20 +41,18 @@ def measured_shot(path: Path) -> bool:
     return path.suffix.lower() == ".json"
 
 
-def read_start(path: Path, folder: Path) -> Start:
+def read_start(path: Path) -> Start:
     """Read the shot to simulate: written by hand, or measured.
 
     Parameters
     ----------
     path : Path
         SHOT.toml or results.json.
-    folder : Path
-        Where the simulation will be written.
 
     Raises
     ------
     InputError
-        Where there is no shot in the files, or `folder` holds the measured one.
+        Where there is no shot in the files.
     """
     from curlshot.data.results_file import read_results
     from curlshot.data.tracks import read_tracks
@@ -65,8 +63,6 @@ def read_start(path: Path, folder: Path) -> Start:
     if not measured_shot(path):
         return written_start(read_shot(path))
     results = read_results(path)
-    if folder.resolve() == path.parent.resolve():
-        raise InputError(f"{folder}: holds the run itself; name another folder with -o")
     tracks = read_tracks(_beside(path, "tracks.csv"))
     return measured_start(tracks, results, read_ensemble(_beside(path, "ensemble.json")))
 

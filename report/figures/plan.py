@@ -15,13 +15,21 @@ from curlshot.data.results import Hit
 from curlshot.data.sheet import SHEET, STONE, House
 from curlshot.physics.simulator.simulation import HitEvent
 from curlshot.report.figures.labels import name_stones
-from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, rows_of, title
+from curlshot.report.figures.parts import (
+    WIDTH,
+    Array,
+    OnAxes,
+    legend_below,
+    line,
+    panels,
+    rows_of,
+    title,
+)
 from curlshot.report.style import (
     BLACK,
     GREY,
     RING_FILLS,
     model_lines,
-    new_figure,
     plain_text,
     stone_colours,
     styled,
@@ -48,6 +56,7 @@ def plan_figure(
     *,
     house: House | None,
     radius: float = STONE.radius,
+    on: OnAxes = None,
 ) -> Figure:
     """Draw the sheet from above: house, measured and simulated paths, hits, last places.
 
@@ -68,6 +77,8 @@ def plan_figure(
         The rings to draw; None where the scene has no house.
     radius : float
         Radius of the stones, m.
+    on : Axes, optional
+        Where to draw; a figure of its own without.
     """
     stones = sorted(str(name) for name in tracks["stone"].unique())
     under_way = [name for name in stones if last_speed(rows_of(tracks, name))]
@@ -83,7 +94,8 @@ def plan_figure(
     low, high = _extent(tracks, simulations, moved, last, house, radius)
     rows_below = 1 + (4 + len(lines)) // 3
     with styled():
-        figure, ax, scale = new_sheet(low, high, rows_below)
+        figure, ax, scale = new_sheet(low, high, rows_below, on)
+        given = None if on is None else ax
         if house is not None:
             draw_house(ax, house, low, high, play(tracks, collisions, radius))
         for model, table in simulations.items():
@@ -104,10 +116,10 @@ def plan_figure(
         for collision in collisions:
             ax.plot(*contact_place(collision, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
         name_stones(ax, last, colours, radius, scale)
-        title(figure, "Plan view")
+        title(figure, "Plan view", given)
         handles = _handles(bool(moved), lines, bool(collisions), bool(under_way), factor)
         if handles:
-            legend_below(figure, handles)
+            legend_below(figure, handles, given)
     return figure
 
 
@@ -136,14 +148,21 @@ def _handles(
     return handles
 
 
-def new_sheet(low: Array, high: Array, rows_below: int) -> tuple[Figure, Axes, float]:
+def new_sheet(
+    low: Array, high: Array, rows_below: int, on: OnAxes = None
+) -> tuple[Figure, Axes, float]:
     """Give a figure of the ice between two corners, m, over so many rows of legend, and inches a m.
 
+    Axes that are given keep their size, and the ice is fitted in.
     For use within `curlshot.report.style.styled`.
     """
     scale = min((WIDTH - 0.75) / (high[0] - low[0]), _TALLEST / (high[1] - low[1]))
-    figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
-    ax = figure.subplots()
+    height = scale * float(high[1] - low[1]) + 0.85 + 0.2 * rows_below
+    figure, grid = panels(on, WIDTH, height)
+    ax = grid[0, 0]
+    if on is not None:
+        box = ax.get_window_extent()
+        scale = min(np.array([box.width, box.height]) / figure.dpi / (high - low))
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
     ax.grid(False)

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
 from curlshot.data.results import JointEstimate
-from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, title
+from curlshot.report.figures.parts import WIDTH, Array, OnAxes, legend_below, line, panels, title
 from curlshot.report.numbers import plus_minus
-from curlshot.report.style import BLUE, GREY, PALE, new_figure, styled
+from curlshot.report.style import BLUE, GREY, PALE, styled
 
 NAMES = {
     "restitution": "$e$",
@@ -28,7 +28,9 @@ _LEVELS = (1.0, 2.0)
 _MOST_DOTS = 2000
 
 
-def posterior_figure(laws: JointEstimate | None, samples: pd.DataFrame | None = None) -> Figure:
+def posterior_figure(
+    laws: JointEstimate | None, samples: pd.DataFrame | None = None, on: OnAxes = None
+) -> Figure:
     """Distribution of restitution and frictions: each alone on the diagonal, pairs below it.
 
     Lines are the normal distribution that values and covariance stand for, with ellipses of
@@ -40,6 +42,8 @@ def posterior_figure(laws: JointEstimate | None, samples: pd.DataFrame | None = 
         Values and covariance of some of ``restitution, friction, stone_friction``.
     samples : DataFrame, optional
         A column for each, a row a sample.
+    on : sequence of Axes, optional
+        Where to draw, a square of panels, a row for each; a figure of its own without.
 
     Raises
     ------
@@ -56,8 +60,8 @@ def posterior_figure(laws: JointEstimate | None, samples: pd.DataFrame | None = 
     ranges = {name: _range(name, laws, samples) for name in names}
     count = len(names)
     with styled():
-        figure = new_figure(WIDTH, 1.0 + 1.55 * count)
-        grid = figure.subplots(count, count, squeeze=False, sharex="col")
+        figure, grid = panels(on, WIDTH, 1.0 + 1.55 * count, count, count, sharex="col")
+        first, last = (None, None) if on is None else grid[[0, -1], 0]
         for i, below in enumerate(names):
             for j, across in enumerate(names):
                 ax = grid[i, j]
@@ -79,13 +83,13 @@ def posterior_figure(laws: JointEstimate | None, samples: pd.DataFrame | None = 
                     ax.tick_params(labelleft=False)
                 if j < i:  # the lines of a row are those of its numbers at the left
                     ax.locator_params(axis="y", nbins=4)
-        title(figure, "Joint uncertainty of restitution and friction")
+        title(figure, "Joint uncertainty of restitution and friction", first)
         handles = []
         if laws is not None:
             handles.append(line("fit: 1 and 2 standard deviations", color=BLUE))
         if samples is not None:
             handles.append(line("samples", color=GREY, marker="s", ls="none", mew=0))
-        legend_below(figure, handles)
+        legend_below(figure, handles, last)
     return figure
 
 

@@ -11,8 +11,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from curlshot.data.results import Hit, TrackResidual
-from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, short, time_axis, title
-from curlshot.report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
+from curlshot.report.figures.parts import (
+    WIDTH,
+    Array,
+    OnAxes,
+    legend_below,
+    line,
+    panels,
+    short,
+    time_axis,
+    title,
+)
+from curlshot.report.style import BLACK, GREY, PALE, stone_colours, styled
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -37,6 +47,7 @@ def residuals_figure(
     residuals: pd.DataFrame,
     collisions: Sequence[Hit] = (),
     misfits: Sequence[TrackResidual] = (),
+    on: OnAxes = None,
 ) -> Figure:
     """Sighted less smoothed places against time, and how they are distributed.
 
@@ -53,13 +64,15 @@ def residuals_figure(
         All hits of the shot, in order.
     misfits : sequence of TrackResidual
         Of the fit of the whole shot; bars along the top show what it left out.
+    on : sequence of Axes, optional
+        Where to draw, two by two panels; a figure of its own without.
     """
     stones = sorted(str(name) for name in residuals["stone"].unique())
     colours = stone_colours(stones)
     left_out = [one for one in misfits if one.downweighted and one.stone in colours]
     with styled():
-        figure = new_figure(WIDTH, 4.2)
-        grid = figure.subplots(2, 2, sharex="col", width_ratios=[3, 1])
+        figure, grid = panels(on, WIDTH, 4.2, 2, 2, sharex="col", width_ratios=[3, 1])
+        first, last = (None, None) if on is None else grid[:, 0]
         for row, axis in zip(grid, "xy", strict=True):
             off, sd = residuals[[f"d{axis}", f"sd_{axis}"]].to_numpy(float).T
             _draw_times(row[0], residuals, 1000 * off, 1000 * float(np.median(sd)), colours)
@@ -77,7 +90,7 @@ def residuals_figure(
             residuals["t"].to_numpy(float),
         )
         figure.align_ylabels(grid[:, 0])
-        title(figure, "Residuals: detections minus smoothed places")
+        title(figure, "Residuals: detections minus smoothed places", first)
         handles: list[Artist] = [
             line(f"stone {short(name)}", color=colours[name], marker="o", ms=3, ls="none")
             for name in stones[:_MOST_NAMED]
@@ -89,7 +102,7 @@ def residuals_figure(
         ]
         if left_out:
             handles.append(line("down-weighted in the shot fit", color=PALE, lw=4))
-        legend_below(figure, handles)
+        legend_below(figure, handles, last)
     return figure
 
 

@@ -222,7 +222,7 @@ def _unlike(old: Any, new: Any, near: Nearness) -> Iterator[str]:
             continue
         left, right = before[place], after[place]
         if _number(left) and _number(right):
-            tolerance = _tolerance(place, before, near)
+            tolerance = max(_tolerance(place, run, near) for run in (before, after))
             if not abs(left - right) <= tolerance:
                 yield f"{where}: {left:.9g}, off by {right - left:.3g}, more than {tolerance:.3g}"
         elif not (left == right or _same_colour(left, right)):
@@ -278,7 +278,7 @@ def _tracks_unlike(old: pd.DataFrame, new: pd.DataFrame, near: Nearness) -> Iter
             off = np.abs((off + turn / 2) % turn - turn / 2)
         limit = LIMITS[column.removeprefix("sd_")]
         if column.startswith("sd_"):
-            tolerance = near.of_error * (left + limit)
+            tolerance = near.of_error * (np.fmax(left, right) + limit)
         else:
             tolerance = np.full(len(both), limit)
             if f"sd_{column}" in both:

@@ -28,12 +28,6 @@ def test_a_project_has_tabs_as_a_clip_and_as_a_camera() -> None:
     )
 
 
-def test_check_refuses_them_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["check", str(pipeline.sample_clip()), "-o", str(tmp_path / "o"), "-q", "--tab", "x"]
-    assert main(words) == 2
-    assert "only tables take --tab" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     ("said", "reason"),
     [
@@ -135,5 +129,5 @@ def test_an_unknown_setting_in_python_names_the_nearest() -> None:
 
 
 def test_options_that_messages_name_are_settings_or_arguments_of_a_command() -> None:
-    arguments = {"config", "over"}
+    arguments = {"aim_offset", "config", "out", "over", "speed", "spin", "throw_sd"}
     assert arguments | {item.name for _, item in Config.settings()} >= OPTIONS

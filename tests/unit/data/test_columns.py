@@ -157,7 +157,7 @@ def test_whole_numbers_are_frames_if_their_rate_is_given(tmp_path: Path) -> None
 
 def test_rows_without_a_time_need_a_rate(tmp_path: Path) -> None:
     read = table(tmp_path, "x,y\n1,2\n3,4\n")
-    with pytest.raises(InputError, match=r"there are x, y\); rename it, or .* \(--fps\)"):
+    with pytest.raises(InputError, match=r"there are x, y\); rename it, or .* \(`fps`\)"):
         clock_column(read, ["x", "y"], None)
     for written in ("Zeit (s)", "temps"):
         assert clock_column(read, ["x", plain_name(written)], None) == 1

@@ -1,25 +1,14 @@
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from curlshot.data.delimited import TextTable, read_text_table
+from curlshot.data.delimited import read_text_table
 from curlshot.data.errors import InputError
 from curlshot.data.tracker import read_table
-
-
-def is_header(names: Sequence[str]) -> bool:
-    return names[0] == "t" and len(names) > 1
-
-
-def read(folder: Path, text: str | bytes) -> TextTable:
-    path = folder / "table.txt"
-    path.write_bytes(text.encode() if isinstance(text, str) else text)
-    return read_text_table(path, is_header)
+from curlshot.tests.helpers.data.delimited import is_header, read
 
 
 def test_rows_names_title_and_line_numbers(tmp_path: Path) -> None:
@@ -74,34 +63,6 @@ def test_blanks_hide_what_is_missing(tmp_path: Path) -> None:
 def test_quoted_cells(tmp_path: Path) -> None:
     table = read(tmp_path, '"t","x"\n"0,5","1,25"\n')
     np.testing.assert_array_equal(table.numbers([0, 1]), [[0.5, 1.25]])
-
-
-MEGABYTE = 1_000_000
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "9" * MEGABYTE + "x",
-        "t,x,y\n" + "9" * MEGABYTE + ",1,1\n",
-        "t,x,y\n0,1," + "9" * MEGABYTE + "x\n",
-        "t,x,y\n0,1," + " " * MEGABYTE + "×\n",
-        "t," + "(" * MEGABYTE + "\n0,1\n",
-        "t" + " " * MEGABYTE + "x\n0,1\n",
-        't,"' + "x" * MEGABYTE + "\n0,1\n",
-        "t," + "x," * MEGABYTE + "\n0,1\n",
-        "," * MEGABYTE,
-        "\n" * MEGABYTE,
-    ],
-    ids=range(10),
-)
-def test_giant_cells_take_no_time(tmp_path: Path, text: str) -> None:
-    start = time.process_time()
-    try:
-        read(tmp_path, text).numbers([0, 1])
-    except InputError as refusal:
-        assert len(str(refusal)) < 400
-    assert time.process_time() - start < 5
 
 
 def test_a_giant_file_is_not_even_opened(tmp_path: Path) -> None:

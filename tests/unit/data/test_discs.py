@@ -1,24 +1,15 @@
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
 
-from curlshot.cli.main import main
 from curlshot.data.discs import refuse_no_discs, top_speed
 from curlshot.data.errors import InputError
 from curlshot.data.sheet import STONE
-from curlshot.data.tracker import read_table
 from curlshot.data.tracks import check_detections
-from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
-
-
-def shot(size: float = 1.0) -> pd.DataFrame:
-    """A hit whose lengths are taken for this many times what they are."""
-    table = watch(hit_motion(), np.random.default_rng(0), sd=0.004, given=False)
-    return table.assign(x=size * table["x"], y=size * table["y"])
+from curlshot.tests.helpers.data.discs import shot
+from curlshot.tests.helpers.physics.watch import RADIUS
 
 
 def test_discs_that_hit_pass() -> None:
@@ -37,7 +28,7 @@ def test_discs_in_one_another_are_refused(size: float) -> None:
 def test_a_point_of_the_edge_is_no_stone() -> None:
     a = shot().query("stone == 'A'")
     edge = a.assign(stone="edge", x=a["x"] + 0.14)
-    with pytest.raises(InputError, match=r"A and edge come within 14 cm .* \(--names\)"):
+    with pytest.raises(InputError, match=r"A and edge come within 14 cm .* \(`names`\)"):
         refuse_no_discs(pd.concat([a, edge]), RADIUS, "a.txt")
 
 
@@ -65,32 +56,3 @@ def test_top_speed_is_hardly_moved_by_noise() -> None:
     speed, _ = top_speed(t, xy)
     assert speed == pytest.approx(1.5, abs=0.15)
     assert top_speed(t[:1], xy[:1]) == (0.0, 0.0)
-
-
-def test_the_command_says_so_in_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    shot()[["stone", "t", "x", "y"]].to_csv(tmp_path / "a.csv", index=False)
-    given = ["estimate", str(tmp_path / "a.csv"), "-o", str(tmp_path / "out"), "-q"]
-    assert main([*given, "--length-unit", "ft"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "another length unit" in line
-    assert not (tmp_path / "out").exists()
-
-
-def test_no_length_unit_is_advised_where_the_file_says_its_own(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    table = shot(0.01)[["stone", "t", "x", "y"]].rename(columns={"x": "x (m)", "y": "y (m)"})
-    table.to_csv(tmp_path / "a.csv", index=False)
-    assert main(["estimate", str(tmp_path / "a.csv"), "-o", str(tmp_path / "o"), "-q"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "calibration" in line and "--length-unit" not in line
-
-
-def test_real_discs_pass(shared: Path) -> None:
-    """Air tables and motion capture, whose discs touch for long."""
-    pucks = read_table([shared / "tracks" / "airtable_two_pucks.csv"], length_unit="cm")
-    refuse_no_discs(pucks.detections, 0.035, "pucks")
-    for path in (shared / "tracks" / "discs_500hz").glob("hit_*.csv"):
-        refuse_no_discs(read_table([path], fps=500).detections, 0.025, path.name)

@@ -59,7 +59,7 @@ def test_what_does_not_go_together_is_refused(
 
 def test_clips_are_sent_to_the_command_that_takes_them(tmp_path: Path) -> None:
     refuse_clips([tmp_path / "A.csv", tmp_path / "b.trk"], "run")
-    with pytest.raises(InputError, match=r"a.mp4: not a table of tracks; try curlshot run"):
+    with pytest.raises(InputError, match=r"a.mp4: not a table of tracks; try `run`"):
         refuse_clips([tmp_path / "A.csv", tmp_path / "a.mp4"], "run")
     with pytest.raises(InputError, match=r"a.xlsx: a spreadsheet; save it as CSV"):
         refuse_clips([tmp_path / "a.xlsx"], "run")

@@ -2,16 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from curlshot.data import osp_write as write
 from curlshot.data.errors import InputError
-from curlshot.data.osp_xml import DEEPEST, Thing, parse
-
-
-def read(lines: list[str]) -> Thing:
-    return parse("\n".join(lines).encode(), "a.trk")
+from curlshot.data.osp_xml import DEEPEST, parse
+from curlshot.tests.helpers.data.osp_xml import read
 
 
 def test_what_is_written_is_read() -> None:
@@ -41,19 +36,6 @@ def test_what_is_written_is_read() -> None:
     assert root.thing("words").sparse() == {1: "x"}
     np.testing.assert_array_equal(root.thing("values").floats(), values.ravel())
     assert [item.cls for item in root.thing("list").objects()] == ["Inner", "Inner"]
-
-
-@given(st.text(max_size=40))
-def test_any_word_comes_back_on_one_line(word: str) -> None:
-    back = read(write.thing("A", [write.entry("word", word)])).text("word")
-    printable = " ".join("".join(c for c in word if c.isprintable()).split())
-    assert back == printable.replace("]]>", "]] >")
-
-
-@given(st.lists(st.floats(allow_infinity=False), max_size=8))
-def test_every_digit_comes_back(values: list[float]) -> None:
-    root = read(write.thing("A", [write.numbers("v", np.array(values, float))]))
-    np.testing.assert_array_equal(root.thing("v").floats(), values)
 
 
 def test_what_is_missing_has_a_default_or_is_refused() -> None:

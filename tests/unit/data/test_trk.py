@@ -4,35 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from curlshot.data.errors import InputError
 from curlshot.data.tracker import read_table
 from curlshot.data.trk import Coordinates, PointMass, Project, Timing
 from curlshot.tests.helpers.data.dialects import project, put
-
-SYSTEM = Coordinates(
-    np.array([0, 3]),
-    np.array([[160.0, 120.0], [170.0, 110.0]]),
-    np.radians([10.0, -25.0]),
-    np.array([[50.0, 50.0], [40.0, 42.0]]),
-)
-
-
-@given(
-    st.lists(
-        st.tuples(st.integers(0, 9), st.floats(-1e4, 1e4), st.floats(-1e4, 1e4)),
-        min_size=1,
-        max_size=5,
-    )
-)
-def test_pixels_are_the_inverse_of_places(rows: list[tuple[int, float, float]]) -> None:
-    frames, *marks = np.array(rows).T
-    pixels = np.column_stack(marks)
-    np.testing.assert_allclose(
-        SYSTEM.pixels(frames, SYSTEM.world(frames, pixels)), pixels, atol=1e-9
-    )
+from curlshot.tests.helpers.data.trk import SYSTEM
 
 
 def test_axes_turn_counter_clockwise_and_y_points_up() -> None:
@@ -61,7 +38,7 @@ def test_steps_of_a_clip_and_their_times() -> None:
 def test_a_project_without_marks_says_what_it_has_and_what_else_can_be_done() -> None:
     timing = Timing(0, 1, 9, 0.0, 0.04, np.empty(0))
     bare = Project("a.trk", (), SYSTEM, SYSTEM, timing, "m", ("a.mp4",), others=("Vector",))
-    with pytest.raises(InputError, match=r"^a.trk: no point mass .*Vector.*--clip"):
+    with pytest.raises(InputError, match=r"^a.trk: no point mass .*Vector.*`clip`"):
         bare.file()
 
 

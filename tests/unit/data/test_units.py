@@ -34,6 +34,6 @@ def test_an_unknown_unit_of_angles_is_refused_but_where_a_person_says_one() -> N
     """Turns were taken for radians without a word."""
     told = [unit_of_angles(unit, None, "a.csv") for unit in (None, "", "rad", "deg")]
     assert told == [None, None, "rad", "deg"]
-    with pytest.raises(InputError, match=r"unit of angles is “turns”, .* \(--angle-unit\)"):
+    with pytest.raises(InputError, match=r"unit of angles is “turns”, .* \(`angle_unit`\)"):
         unit_of_angles("turns", None, "a.csv")
     assert unit_of_angles("turns", "deg", "a.csv") == "deg"

@@ -16,4 +16,4 @@ from curlshot.physics.cautions import _pace_anywhere
     ],
 )
 def test_a_friction_below_that_of_any_surface_is_told(friction: Estimate, said: bool) -> None:
-    assert any("--fps" in text for text in _pace_anywhere(friction)) == said
+    assert any("`fps`" in text for text in _pace_anywhere(friction)) == said

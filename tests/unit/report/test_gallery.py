@@ -45,14 +45,6 @@ def test_names_of_files_differ_on_every_disk(shot):
     assert sorted(name.lower() for name in found) == ["motion_a_b", "motion_a_b-2", "motion_a_b-3"]
 
 
-def test_a_figure_is_drawn_when_asked(shot):
-    plan = next(iter(pictures(shot.results, shot.tracks, shot.simulations, HOUSE)))
-    assert plan.caption.startswith("Plan view: measured paths")
-    assert "4 stones, of which 3 moved" in plan.alt
-    assert len(plan.draw().axes) == 1
-    assert plan.draw() is not plan.draw()
-
-
 @pytest.mark.parametrize("rows", [1, 2])
 def test_residuals_need_more_than_one_time(shot, rows):
     from curlshot.report.tables import residual_table

@@ -38,7 +38,7 @@ def test_predictions_stand_beside_what_was_fitted(shot):
     other = page_tables(replace(results, joint_estimate=None, predictions={}), shot.tracks)
     alone = {table.name: table for table in other}
     assert "predictions" not in alone
-    assert "state before" in alone["models"].note
+    assert "from the state before" in alone["models"].note
     assert "before the first hit" in alone["table_4_point-mass"].note
 
 

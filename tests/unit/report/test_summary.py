@@ -2,16 +2,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pandas as pd
-import pytest
-
-from curlshot.cli.main import main
 from curlshot.data.coach_units import FEET
 from curlshot.data.results import Prediction
 from curlshot.data.sheet import HOUSE
 from curlshot.report import tables
 from curlshot.report.summary import summary
-from curlshot.tests.helpers.report.glides import glide
 
 
 def test_the_law_is_named_beside_a_friction_that_is_known(shot):
@@ -82,13 +77,3 @@ def test_the_summary_says_who_lies_shot_in_the_unit_asked_for(shot):
     assert f"{name}, {distance / 0.3048:.1f} ft from the tee" in feet
     assert "1.2 in RMS" in feet
     assert "shot stone" not in summary(shot.results, shot.tracks)
-
-
-@pytest.mark.parametrize(("unit", "said"), [("m", "m from the tee"), ("ft", "ft from the tee")])
-def test_the_command_takes_the_unit(tmp_path, capsys, unit: str, said: str):
-    tracks = pd.concat([glide("A", (0.3, 3.0), 1.0), glide("B", (0.6, 0.8))])
-    tracks.to_csv(tmp_path / "glide.csv", index=False)
-    words = ["estimate", "-q", str(tmp_path / "glide.csv"), "-o", str(tmp_path / "out")]
-    assert main([*words, "--units", unit]) == 0
-    (line,) = [k for k in capsys.readouterr().out.splitlines() if k.startswith("shot stone")]
-    assert said in line

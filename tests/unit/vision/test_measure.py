@@ -25,14 +25,14 @@ def test_discs_are_more_than_a_dot_and_less_than_the_picture(scale: float, fine:
     if fine:
         check_size(STONE.radius, camera(scale))
     else:
-        with pytest.raises(InputError, match="check --radius"):
+        with pytest.raises(InputError, match="verify `radius`"):
             check_size(STONE.radius, camera(scale))
 
 
 @pytest.mark.parametrize("radius", [0.05, 0.115, 0.291])
 def test_what_is_no_stone_by_its_radius_is_not_looked_for_in_a_house(radius: float) -> None:
     with pytest.raises(
-        InputError, match=rf"radius {radius:g} m: in a house .* --stick or --camera"
+        InputError, match=rf"radius {radius:g} m: in a house .* `stick` or `camera`"
     ):
         disc_of(Config().replace(radius=radius))
     assert disc_of(Config().replace(radius=0.12)).radius == 0.12

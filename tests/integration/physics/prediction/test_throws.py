@@ -57,3 +57,9 @@ def test_without_a_fit_of_the_whole_it_is_not_simulated_again(both) -> None:
     assert found.shot_fit is not None
     assert set(whole.samples["frictional"]["stone"]) == {"A", "B", "C"}
     assert whole.scores["frictional"].rest_error.keys() == {"A", "B", "C"}
+
+
+def test_a_first_throw_alone_is_no_second_one(both) -> None:
+    _, tracks, _ = both
+    late = tracks[(tracks["t"] > 3.8)]
+    assert later_throws(late) == {}

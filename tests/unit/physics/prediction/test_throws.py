@@ -58,12 +58,6 @@ def test_speeds_that_are_hardly_known_are_no_throw() -> None:
     assert not later_throws(pd.concat([unsure, thrown], ignore_index=True))
 
 
-def test_a_first_throw_alone_is_no_second_one(both) -> None:
-    _, tracks, _ = both
-    late = tracks[(tracks["t"] > 3.8)]
-    assert later_throws(late) == {}
-
-
 @pytest.mark.parametrize(
     ("turn", "dx", "dy", "there"),
     [(0, 0, 0, True), (2, 0, 0, True), (0, 1.5, 2.0, True), (1, 0, 0, False), (0, 6, 2.5, False)],

@@ -9,15 +9,6 @@ from curlshot.vision.optics.paint import fixed
 from curlshot.vision.optics.pose import View, camera, project
 
 
-def test_uncertainty_grows_from_keyframe_to_keyframe() -> None:
-    view, rig = truth(PATH, 0.0)
-    image = render_still(SCENE, PATH, 0.0)
-    cov = np.diag([1e-4, 1e-4, 1e-4, 1e-4]) ** 2
-    first = keyframe(0, image, view, rig, cov)
-    assert 0.0005 < first.drift < 0.005
-    assert keyframe(0, image, view, rig, cov, 0.01).drift > 0.01
-
-
 def test_points_of_a_keyframe_move_with_its_camera() -> None:
     view, rig = truth(PATH, 0.0)
     key = keyframe(3, render_still(SCENE, PATH, 0.0), view, rig, np.zeros((4, 4)))

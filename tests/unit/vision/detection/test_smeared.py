@@ -7,12 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.data.sheet import STONE
-from curlshot.synthetic.clip import render_still
-from curlshot.tests.helpers.vision.smeared import LEARNED, PATH, PICTURES, SCENES, VIEW
-from curlshot.tests.helpers.vision.stones import CAMERA
 from curlshot.tests.helpers.vision.tracks import detection
-from curlshot.vision.detection.measure import measure_discs
-from curlshot.vision.detection.rays import Look, Rays, directions
+from curlshot.vision.detection.rays import Rays, directions
 from curlshot.vision.detection.smeared import BY_EDGES_OFF, _covered, middles, swept_share, widened
 
 Array = NDArray[np.float64]
@@ -73,40 +69,6 @@ def test_what_is_covered_changes_as_it_is_said_to() -> None:
 def test_slow_stones_are_left_to_their_edges_and_fast_ones_are_not() -> None:
     share = swept_share(np.array([[0.0, 0.0], [0.03, 0.02], [0.0, -0.07], [0.09, 0.05]]))
     assert share[:2].tolist() == [0, 0] and 0.2 < share[2] < 0.8 and share[3] == 1
-
-
-@pytest.mark.parametrize("aside", [(0.0, 0.0), (0.004, 0.012), (-0.003, -0.012)])
-def test_of_a_stone_that_is_known_to_move_the_place_is_that_of_mid_exposure(
-    aside: tuple[float, float],
-) -> None:
-    place = PATH[1:2] + np.array(aside)
-    look = Look(PICTURES[1], VIEW, place, (PATH[1] - PATH[0])[None])
-    still = measure_discs([replace(look, drift=None)], LEARNED, STONE)
-    moving = measure_discs([look], LEARNED, STONE)
-    assert moving.swept.all() and not still.swept.any()
-    assert np.hypot(*(moving.centre[0] - PATH[1])) < 0.0025
-    assert moving.sd[0, 1] > still.sd[0, 1]
-    assert np.isnan(moving.light).all()
-
-
-@pytest.mark.parametrize("drift", [(-0.01, -0.1), (0.07, 0.05)])
-def test_a_fast_stone_that_is_sharp_is_told_by_its_edges(drift: tuple[float, float]) -> None:
-    picture = render_still(SCENES[4][1], CAMERA)
-    look = Look(picture, VIEW, PATH[1:2], np.array([drift]))
-    still = measure_discs([replace(look, drift=None)], LEARNED, STONE)
-    moving = measure_discs([look], LEARNED, STONE)
-    assert moving.swept.all()
-    np.testing.assert_array_equal(moving.centre, still.centre)
-    np.testing.assert_array_equal(moving.sd, still.sd)
-    assert np.isfinite(moving.light).all()
-
-
-def test_a_fast_stone_that_is_half_covered_is_left_to_its_edges() -> None:
-    covered = PICTURES[1].copy()
-    x, y = VIEW.project(PATH[1:2], STONE.cap_height)[0].astype(int).tolist()
-    covered[y - 50 : y + 50, x : x + 50] = (60, 90, 60)
-    look = Look(covered, VIEW, PATH[1:2], (PATH[1] - PATH[0])[None])
-    assert not measure_discs([look], LEARNED, STONE).swept.any()
 
 
 def test_smeared_edges_say_less_of_where_a_fast_stone_is_along_its_way() -> None:

@@ -4,10 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from curlshot.tests.helpers.vision.camera import SIZE, Pinhole
 from curlshot.vision.optics.camera import (
     CAMERA_COLUMNS,
     Camera,
@@ -15,59 +13,6 @@ from curlshot.vision.optics.camera import (
     camera_table,
 )
 from curlshot.vision.optics.projection import PARAMETERS, apply_homography
-
-Array = NDArray[np.float64]
-SIZE = (1280, 720)
-
-
-class Pinhole:
-    """A pinhole camera in three dimensions, to compare with: looks down, y of the ice up."""
-
-    def __init__(self, place: tuple[float, float, float], pan: float, tilt: float, roll: float):
-        down = np.diag([1.0, -1.0, -1.0])
-        about_x = [[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]]
-        about_y = [[np.cos(pan), 0, np.sin(pan)], [0, 1, 0], [-np.sin(pan), 0, np.cos(pan)]]
-        about_z = [[np.cos(roll), -np.sin(roll), 0], [np.sin(roll), np.cos(roll), 0], [0, 0, 1]]
-        self.turn = np.array(about_z) @ np.array(about_y) @ np.array(about_x) @ down
-        self.place = np.array(place)
-        self.f = 1500.0
-        self.centre = np.array([(SIZE[0] - 1) / 2, (SIZE[1] - 1) / 2])
-
-    def pixels(self, xyz: Array) -> Array:
-        seen = (xyz - self.place) @ self.turn.T
-        return self.centre + self.f * seen[..., :2] / seen[..., 2:]
-
-    def camera(self, k1: float = 0.0, k2: float = 0.0) -> Camera:
-        inner = np.array([[self.f, 0, self.centre[0]], [0, self.f, self.centre[1]], [0, 0, 1]])
-        to_ice = np.column_stack([self.turn[:, 0], self.turn[:, 1], -self.turn @ self.place])
-        homography = inner @ to_ice
-        return Camera(
-            3, 0.12, homography / homography[2, 2], SIZE, k1, k2, self.f, position=self.place
-        )
-
-
-angles = st.floats(-0.25, 0.25)
-pinholes = st.builds(
-    Pinhole,
-    st.tuples(st.floats(-2, 2), st.floats(-2, 2), st.floats(6, 12)),
-    angles,
-    angles,
-    st.floats(-3, 3),
-)
-places = st.tuples(st.floats(-3, 3), st.floats(-3, 3))
-# From none to the strongest that was measured, invertible within the picture.
-distortions = st.sampled_from([(0.0, 0.0), (-0.11, 0.0), (0.06, 0.06), (-0.28, 0.06), (0.0, 0.02)])
-
-
-@given(pinhole=pinholes, place=places, height=st.floats(0, 2))
-def test_heights_are_seen_where_a_pinhole_camera_sees_them(
-    pinhole: Pinhole, place: tuple[float, float], height: float
-) -> None:
-    wanted = pinhole.pixels(np.array([*place, height]))
-    found = pinhole.camera().project(np.array(place), height)
-    np.testing.assert_allclose(found, wanted, atol=1e-6)
-    back = pinhole.camera().ice(wanted, height)
-    np.testing.assert_allclose(back, place, atol=1e-7)
 
 
 def test_parallax_has_the_size_of_similar_triangles() -> None:
@@ -85,19 +30,6 @@ def test_without_a_place_of_the_camera_heights_are_ignored() -> None:
     np.testing.assert_array_equal(camera.ice([9.0, 9.0], 0.12), camera.ice([9.0, 9.0]))
 
 
-@given(
-    x=st.floats(0, SIZE[0] - 1),
-    y=st.floats(0, SIZE[1] - 1),
-    distortion=distortions,
-)
-def test_undistorting_and_distorting_is_the_identity_in_the_picture(
-    x: float, y: float, distortion: tuple[float, float]
-) -> None:
-    camera = Camera(0, 0.0, np.eye(3), SIZE, *distortion)
-    pixel = np.array([x, y])
-    np.testing.assert_allclose(camera.distort(camera.undistort(pixel)), pixel, atol=1e-6)
-
-
 def test_distortion_is_the_polynomial_about_the_middle() -> None:
     camera = Camera(0, 0.0, np.eye(3), SIZE, k1=-0.1, k2=0.05)
     centre, radius = np.array([639.5, 359.5]), np.hypot(1280, 720) / 2
@@ -110,21 +42,6 @@ def test_distortion_is_the_polynomial_about_the_middle() -> None:
     np.testing.assert_allclose(
         (camera.distort(halfway) - centre)[0] / radius, 0.5 * (1 - 0.1 / 4 + 0.05 / 16)
     )
-
-
-@given(pinhole=pinholes, place=places, distortion=distortions)
-def test_ice_to_picture_and_back(
-    pinhole: Pinhole, place: tuple[float, float], distortion: tuple[float, float]
-) -> None:
-    camera = pinhole.camera(*distortion)
-    pixel = camera.project(np.array(place), 0.12)
-    if (pixel < 0).any() or (pixel > np.array(SIZE)).any():
-        return
-    # What lies far outside may be folded into the picture by the polynomial.
-    if np.hypot(*(camera.undistort(pixel) - pinhole.pixels(np.array([*place, 0.12])))) > 1:
-        assert np.hypot(*(pinhole.pixels(np.array([*place, 0.12])) - pinhole.centre)) > 730
-        return
-    np.testing.assert_allclose(camera.ice(pixel, 0.12), place, atol=1e-6)
 
 
 def test_shapes_are_kept_and_inputs_are_not_changed() -> None:
@@ -185,7 +102,7 @@ def test_the_covariance_of_places_is_of_what_is_shared_and_what_is_not() -> None
     np.testing.assert_allclose(known.place_cov(places), expected, rtol=1e-9)
     of_all = known.shared_place_cov(places)
     np.testing.assert_allclose(known.place_sd(places) ** 2, np.trace(of_all.T) / 2, rtol=1e-9)
-    with pytest.raises(ValueError, match="place is not known"):
+    with pytest.raises(ValueError, match="position of the camera is unknown"):
         replace(camera, position=None).place_jacobian(places)
 
 

@@ -60,16 +60,6 @@ def test_points_of_known_place_fix_a_view() -> None:
     assert found.inliers.all()
 
 
-def test_stated_errors_of_a_view_are_the_scatter_of_its_fits() -> None:
-    rng = np.random.default_rng(7)
-    rig, view = true_rig(), views(1)[0]
-    fits = [solve_view(marks(rng, view.vector, rig, SD), view, rig, SIZE) for _ in range(300)]
-    scatter = np.cov(np.array([f.view.vector for f in fits]).T)
-    stated = np.mean([f.cov for f in fits], axis=0)
-    spread = np.sqrt(np.linalg.eigvalsh(np.linalg.solve(stated, scatter)))
-    assert 0.8 < spread.min() < spread.max() < 1.2
-
-
 def test_views_of_no_marks_are_not_known() -> None:
     rig, view = true_rig(), views(1)[0]
     found = solve_view(joined([]), view, rig, SIZE)

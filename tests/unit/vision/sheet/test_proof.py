@@ -6,84 +6,19 @@ import cv2
 import numpy as np
 import pytest
 
-from curlshot.synthetic import PAINTS, render_still, sample_scene, tilted_camera
-from curlshot.vision.optics.pose import View, project
-from curlshot.vision.optics.rig import OVERHEAD, start_rig
-from curlshot.vision.sheet.house import find_house
-from curlshot.vision.sheet.house_fit import HouseFit
-from curlshot.vision.sheet.marks import Evidence, measure_marks
-from curlshot.vision.sheet.proof import is_house, stands_alone, worth
-from curlshot.vision.video.picture import Image
-
-SCENE = replace(sample_scene(), paint=PAINTS["navy-orange"])
-
-SIZE = (960, 540)
-SCALE, FINE = 90.0, 4
-ICE, BLUE, RED = (232, 230, 228), (170, 80, 30), (50, 40, 200)
-HOUSE = ((1.829, BLUE), (1.2135, ICE), (0.619, RED))
-
-
-def level() -> tuple[View, np.ndarray]:
-    rig = start_rig(OVERHEAD, (0.0, 0.0, 9.0))
-    rig[3:6] = 0
-    return View(np.array([0.0, 0.0, 0.0, np.log(SCALE * 9)])), rig
-
-
-def drawn(
-    circles: tuple[tuple[float, tuple[int, int, int]], ...],
-    ground: tuple[int, int, int] = ICE,
-    cross: bool = True,
-) -> Image:
-    """Discs about the middle of a picture, the largest first, and lines through it."""
-    image = np.full((FINE * SIZE[1], FINE * SIZE[0], 3), ground, np.uint8)
-    middle = (FINE * SIZE[0] // 2, FINE * SIZE[1] // 2)
-    for radius, colour in circles:
-        cv2.circle(image, middle, round(FINE * SCALE * radius), colour, -1)
-    if cross:
-        cv2.line(image, (0, middle[1]), (FINE * SIZE[0], middle[1]), (60, 60, 60), FINE)
-        cv2.line(image, (middle[0], 0), (middle[0], FINE * SIZE[1]), (60, 60, 60), FINE)
-    return np.asarray(cv2.resize(image, SIZE, interpolation=cv2.INTER_AREA), np.uint8)
-
-
-def seen(image: Image) -> Evidence:
-    view, rig = level()
-    return measure_marks(image, view.vector, rig, reach=6.0)
-
-
-def proved(image: Image) -> bool:
-    return is_house(image, seen(image), *level())
-
-
-@pytest.fixture(scope="module")
-def low() -> tuple[Image, HouseFit]:
-    """A house from so near that circles about it run behind the camera."""
-    camera = tilted_camera(np.deg2rad(50), height=3.4, px_per_m=110)
-    picture = np.asarray(render_still(SCENE, camera, 0.0), np.uint8)
-    found = find_house(picture)
-    assert found is not None
-    assert np.hypot(*found.rig[:2]) < 5.0
-    return picture, found
-
-
-def test_a_house_is_one_though_its_surroundings_reach_behind_the_camera(
-    low: tuple[Image, HouseFit],
-) -> None:
-    picture, found = low
-    assert worth(found.evidence) > 1.5
-    assert is_house(picture, found.evidence, found.view, found.rig)
-
-
-def test_a_circle_more_than_a_house_has_makes_a_target(low: tuple[Image, HouseFit]) -> None:
-    picture, found = low
-    angle = np.linspace(0, 2 * np.pi, 200)
-    ring = 1.5 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    size = (picture.shape[1], picture.shape[0])
-    line = project(ring, found.view.vector, found.rig, size)
-    target = picture.copy()
-    cv2.polylines(target, [np.round(line).astype(np.int32)], True, (30, 200, 230), 6)
-    assert not is_house(target, found.evidence, found.view, found.rig)
-    assert not stands_alone(target, found.evidence, found.view, found.rig)
-    assert stands_alone(picture, found.evidence, found.view, found.rig)
+from curlshot.tests.helpers.vision.proof import (
+    HOUSE,
+    ICE,
+    RED,
+    SIZE,
+    drawn,
+    level,
+    proved,
+    seen,
+)
+from curlshot.vision.optics.pose import View
+from curlshot.vision.sheet.marks import measure_marks
+from curlshot.vision.sheet.proof import stands_alone, worth
 
 
 def test_corners_that_a_lens_leaves_dark_are_no_circle() -> None:
@@ -98,20 +33,6 @@ def test_corners_that_a_lens_leaves_dark_are_no_circle() -> None:
     view, rig = View(np.array([0.0, 0.0, 0.0, np.log(scale * 9)])), level()[1]
     evidence = measure_marks(dark, view.vector, rig, reach=6.0)
     assert stands_alone(dark, evidence, view, rig)
-
-
-@pytest.mark.parametrize(
-    ("paint", "darker", "alone"),
-    [(None, 16, True), (None, 30, False), (32, 8, True), (32, 17, False)],
-)
-def test_a_circle_about_a_house_stands_out_by_what_its_rings_do(
-    paint: int | None, darker: int, alone: bool
-) -> None:
-    """Of rings in strong colours, and of some that are hardly darker than the ice."""
-    bleak, faint = ((b - by, g - by, r - by) for by in (paint or 0, darker) for b, g, r in [ICE])
-    house = HOUSE if paint is None else ((1.829, bleak), HOUSE[1], (0.619, bleak))
-    picture = drawn(((2.5, faint), *house))
-    assert stands_alone(picture, seen(picture), *level()) is alone
 
 
 def test_a_house_is_worth_most() -> None:
@@ -134,13 +55,6 @@ def test_two_circles_of_which_none_is_the_second_are_none_of_a_sliver() -> None:
     assert worth(replace(evidence, visible=0.42 * evidence.visible)) == 0
     whole = seen(drawn(HOUSE))
     assert worth(replace(whole, visible=0.42 * whole.visible)) > 0
-
-
-@pytest.mark.parametrize("cross", [True, False])
-def test_bare_ice_between_the_paint_or_the_lines_prove_it(cross: bool) -> None:
-    assert proved(drawn(HOUSE, cross=cross))
-    painted = ((1.829, BLUE), (1.2135, (60, 160, 60)), (0.619, RED))
-    assert proved(drawn(painted, cross=cross)) == cross
 
 
 @pytest.mark.parametrize("radius", [0.9, 1.5, 2.5])

@@ -2,25 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
+from curlshot.tests.helpers.vision.align import spectra
 from curlshot.tests.helpers.vision.handles import RADII, patch
-from curlshot.vision.spin.align import Complex, align, rings_seen, turned
+from curlshot.vision.spin.align import align, rings_seen
 from curlshot.vision.spin.handle import cap_spectrum
-
-
-def spectra(angles: list[float], shifts: list[tuple[float, float]]) -> Complex:
-    pairs = zip(angles, shifts, strict=True)
-    return np.array([cap_spectrum(patch(angle, None, shift), RADII) for angle, shift in pairs])
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.floats(-3, 3), st.floats(-3, 3))
-def test_a_turned_picture_is_that_of_the_turned_cap(start: float, turn: float) -> None:
-    before, after = spectra([start, start + turn], [(0.0, 0.0)] * 2)
-    difference = turned(before[None], np.array([turn]))[0] - after
-    assert np.abs(difference).max() < 0.05 * np.abs(after).max()
 
 
 def test_angles_are_found_from_beside_them() -> None:

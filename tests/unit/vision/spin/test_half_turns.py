@@ -1,45 +1,9 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from curlshot.vision.spin.align import ORDERS
+from curlshot.tests.helpers.vision.half_turns import CLOSE, error, pictures
 from curlshot.vision.spin.half_turns import unfolded
-
-RNG = np.random.default_rng(3)
-BAR = np.where(ORDERS % 2 == 0, np.exp(-((ORDERS / 6.0) ** 2)), 0.0)
-CLOSE = 0.1
-"""To what a path tells angles, rad: half of how far apart those that are tried are, and more."""
-
-
-def pictures(angles: np.ndarray, lit: float = 0.0, noise: float = 0.02) -> np.ndarray:
-    """Pictures of a bar alike at both ends; of its odd harmonics light has the other sign."""
-    odd = np.where(ORDERS % 2 == 1, lit * np.exp(-((ORDERS / 6.0) ** 2)), 0.0)
-    turned = (BAR + odd * np.sign(np.cos(angles))[:, None]) * np.exp(-1j * ORDERS * angles[:, None])
-    each = np.repeat(turned, 24, axis=1).reshape(len(angles), len(ORDERS), 8, 3)
-    grain = RNG.normal(0, noise, (2, *each.shape))
-    return np.asarray(each + grain[0] + 1j * grain[1], np.complex64)
-
-
-def error(found: np.ndarray, true: np.ndarray) -> float:
-    """Largest difference but for what all have in common."""
-    off = found - true
-    return float(np.nanmax(np.abs(off - np.nanmedian(off))))
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.floats(-3, 3), st.integers(8, 30), st.integers(0, 12), st.sampled_from([-2, -1, 1, 2]))
-def test_half_turns_beside_a_gap_are_taken_out(
-    spin: float, at: int, hidden: int, halves: int
-) -> None:
-    times = np.arange(50) / 25
-    true = spin * times
-    angles = true + np.pi * halves * (np.arange(50) >= at)
-    angles[at : at + hidden] = np.nan
-    out = unfolded(times, pictures(true), angles)
-    assert np.array_equal(np.isfinite(out), np.isfinite(angles))
-    assert error(out, true) < CLOSE
 
 
 def test_a_hit_changes_a_spin_and_what_covers_a_cap_for_a_moment_does_not() -> None:

@@ -11,7 +11,6 @@ from curlshot.tests.helpers.vision.steep_handles import (
     Array,
     pictures,
     spin_off,
-    turning,
 )
 from curlshot.vision.spin.align import align
 from curlshot.vision.spin.angles import angles_in_parts
@@ -108,17 +107,6 @@ def test_angles_that_are_told_part_by_part_are_levelled_too(most: int) -> None:
     plain = angles_in_parts(TIMES, shown, RADII, sd, most)
     aslant = angles_in_parts(TIMES, shown, RADII, sd, most, SLANTS)
     assert np.ptp(aslant.theta - plain.theta) > 0.03
-
-
-@pytest.mark.parametrize("turn", [0.0, 1.0, 2.5])
-def test_what_is_left_is_by_the_same_axes_in_all_parts_of_a_long_track(turn: float) -> None:
-    """One number says for all pictures of a stone how much steeper it is along its handle."""
-    shown = [*map(Cached, turning(TRUE + turn, SLANTS, 0.35))]
-    sd = np.full(len(TIMES), 0.0005)
-    whole, parts = (angles_in_parts(TIMES, shown, RADII, sd, n, SLANTS).rise for n in (500, 35))
-    for first, last in ((0, 34), (35, 69)):
-        ways = [rise[last] - rise[first] for rise in (whole, parts)]
-        assert ways[0] @ ways[1] > 0.98 * np.prod(np.linalg.norm(ways, axis=1))
 
 
 def test_no_picture_counts_more_for_being_turned_as_most_are() -> None:

@@ -67,6 +67,66 @@ def sample_truth() -> tuple[pd.DataFrame, tuple[Camera, ...]]:
     return tracks, tuple(cameras)
 
 
+def angles(theta: Array, unlike: tuple[float, float], height: int) -> HandleAngles:
+    return HandleAngles(
+        theta, 0 * theta + 0.01, np.zeros((len(theta), 2)), np.array(unlike), frozenset({height})
+    )
+
+
+@pytest.mark.parametrize("name", ["pyeongchang_two_hits", "lgt_glancing"])
+def test_real_stones(shared: Path, name: str) -> None:
+    truth = json.loads((shared / "clips" / f"semireal_{name}.truth.json").read_text())
+    width, height = truth["size"]
+    cameras = tuple(
+        Camera(
+            frame["frame"], frame["t"], np.array(frame["homography"]), (width, height),
+            position=-np.array(frame["R"]).T @ np.array(frame["T"]),
+        )
+        for frame in truth["frames"]
+    )  # fmt: skip
+    assert all(frame["k1"] == 0 for frame in truth["frames"])
+    tracks = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
+    clip = open_video([shared / "clips" / f"semireal_{name}.mp4"], VideoConfig(frames=(40, 110)))
+    stones = track_stones(clip, cameras, disc=STONE)
+    score = score_tracks(stones.detections.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
+    assert score.recall > 0.97
+    assert score.switches == 0
+    assert not score.false_tracks
+    assert score.rmse < 0.015
+
+
+@pytest.mark.parametrize(
+    ("name", "last", "hit"),
+    [("video_1_0233_0240", None, 0.95), ("video_13_0030_0034", 52, 1.1)],
+)
+def test_balls_among_projected_rings_hit_each_other(
+    shared: Path, name: str, last: int | None, hit: float
+) -> None:
+    clip = open_video([shared / "clips" / f"{name}.mp4"], VideoConfig(frames=(0, last)))
+    cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
+    seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).detections
+    (contact,) = detect_hits(seen, 0.0286)
+    assert contact.t == pytest.approx(hit, abs=0.05)
+    assert {*seen.loc[seen["t"] > hit, "stone"]} == {*contact.stones}
+
+
+def test_pucks_on_a_dark_table(shared: Path) -> None:
+    clip = open_video([shared / "clips" / "collision-pucks.mp4"], VideoConfig(frames=(2, 31)))
+    cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))
+    stones = track_stones(clip, cameras, disc=plain_disc(0.0465))
+    table = stones.detections
+    assert table["stone"].value_counts().to_dict() == {"A": 30, "B": 30}
+    thrown, other = (table[table["stone"] == name] for name in "AB")
+    # The masses are equal: what the two move by in all stays the same through the hit.
+    total = thrown[["x", "y"]].to_numpy() + other[["x", "y"]].to_numpy()
+    before, after = (
+        np.polyfit(np.arange(13), total[:13], 1),
+        np.polyfit(np.arange(13), total[-13:], 1),
+    )
+    assert np.hypot(*(before[0] - after[0])) < 0.03 * np.hypot(*before[0])
+    assert np.nanmax(np.abs(np.diff(thrown["theta"]))) < 0.05
+
+
 def test_the_sample_is_followed_from_end_to_end() -> None:
     truth, cameras = sample_truth()
     clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
@@ -139,60 +199,6 @@ def test_caps_that_are_hardly_told_from_granite_lie_less_surely(tmp_path: Path) 
     assert min(shared[:2]) > 0.004 > 2 * shared[2]
 
 
-@pytest.mark.parametrize("name", ["pyeongchang_two_hits", "lgt_glancing"])
-def test_real_stones(shared: Path, name: str) -> None:
-    truth = json.loads((shared / "clips" / f"semireal_{name}.truth.json").read_text())
-    width, height = truth["size"]
-    cameras = tuple(
-        Camera(
-            frame["frame"], frame["t"], np.array(frame["homography"]), (width, height),
-            position=-np.array(frame["R"]).T @ np.array(frame["T"]),
-        )
-        for frame in truth["frames"]
-    )  # fmt: skip
-    assert all(frame["k1"] == 0 for frame in truth["frames"])
-    tracks = pd.read_csv(shared / "clips" / f"semireal_{name}.truth.csv")
-    clip = open_video([shared / "clips" / f"semireal_{name}.mp4"], VideoConfig(frames=(40, 110)))
-    stones = track_stones(clip, cameras, disc=STONE)
-    score = score_tracks(stones.detections.assign(seen=1), tracks[tracks["frame"].between(40, 110)])
-    assert score.recall > 0.97
-    assert score.switches == 0
-    assert not score.false_tracks
-    assert score.rmse < 0.015
-
-
-@pytest.mark.parametrize(
-    ("name", "last", "hit"),
-    [("video_1_0233_0240", None, 0.95), ("video_13_0030_0034", 52, 1.1)],
-)
-def test_balls_among_projected_rings_hit_each_other(
-    shared: Path, name: str, last: int | None, hit: float
-) -> None:
-    clip = open_video([shared / "clips" / f"{name}.mp4"], VideoConfig(frames=(0, last)))
-    cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
-    seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).detections
-    (contact,) = detect_hits(seen, 0.0286)
-    assert contact.t == pytest.approx(hit, abs=0.05)
-    assert {*seen.loc[seen["t"] > hit, "stone"]} == {*contact.stones}
-
-
-def test_pucks_on_a_dark_table(shared: Path) -> None:
-    clip = open_video([shared / "clips" / "collision-pucks.mp4"], VideoConfig(frames=(2, 31)))
-    cameras = stick_cameras(clip, (20.0, 219.8, 20.0, 35.9, 0.5))
-    stones = track_stones(clip, cameras, disc=plain_disc(0.0465))
-    table = stones.detections
-    assert table["stone"].value_counts().to_dict() == {"A": 30, "B": 30}
-    thrown, other = (table[table["stone"] == name] for name in "AB")
-    # The masses are equal: what the two move by in all stays the same through the hit.
-    total = thrown[["x", "y"]].to_numpy() + other[["x", "y"]].to_numpy()
-    before, after = (
-        np.polyfit(np.arange(13), total[:13], 1),
-        np.polyfit(np.arange(13), total[-13:], 1),
-    )
-    assert np.hypot(*(before[0] - after[0])) < 0.03 * np.hypot(*before[0])
-    assert np.nanmax(np.abs(np.diff(thrown["theta"]))) < 0.05
-
-
 def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
     truth, cameras = sample_truth()
     clip = open_video([DATA / "sample.mp4"], VideoConfig(frames=(0, 80)))
@@ -230,12 +236,6 @@ def test_caps_seen_aslant_may_have_been_unrolled_aside(disc: Stone, more: float)
         cameras = [Camera(0, 0.0, np.eye(3), (160, 120), position=position)]
         off = off_axis(track, slants_of({"A": track}, cameras, disc)["A"])
         assert off == pytest.approx(np.hypot(0.5 * (seen.sd_x + seen.sd_y), aside))
-
-
-def angles(theta: Array, unlike: tuple[float, float], height: int) -> HandleAngles:
-    return HandleAngles(
-        theta, 0 * theta + 0.01, np.zeros((len(theta), 2)), np.array(unlike), frozenset({height})
-    )
 
 
 def test_no_clip_has_all_of_what_places_may_share() -> None:

@@ -90,7 +90,7 @@ def test_of_a_low_camera_overhead_the_height_can_be_said() -> None:
         places = camera.ice(path.at(camera.t).project(caps), height=0.12)
         off.append(float(np.hypot(*(places - caps[:, :2]).T).max()))
         assert worst(track, path) < 0.003
-    assert any("say it with --camera-height" in w for w in follow(path, duration=0.4)[0].warnings)
+    assert any("give it as `camera_height`" in w for w in follow(path, duration=0.4)[0].warnings)
     assert not track.warnings
     assert off[0] > 0.008 and off[1] < 0.0025
 
@@ -464,7 +464,7 @@ def test_a_single_picture_is_a_clip(tmp_path: Path) -> None:
 
 
 def test_a_clip_without_a_house_says_what_to_do() -> None:
-    with pytest.raises(SceneError, match=r"no house in view.*--stick"):
+    with pytest.raises(SceneError, match=r"no house in view.*`stick`"):
         follow(still_camera(target=(0.0, 6.5)), duration=0.4)
 
 
