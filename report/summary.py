@@ -171,12 +171,12 @@ def summary(
                 f" {unit.little(guess.rmse)} RMS error"
             )
             lines += _each(
-                f"{AFTER} s after the first hit",
+                f"{AFTER} s after hit 1",
                 guess.error_at_comparison,
                 guess.sd_at_comparison,
                 unit,
             )
-            lines += _each(f"{'at the end':26s}", guess.rest_error, guess.rest_sd, unit)
+            lines += _each(f"{'at the end':18s}", guess.rest_error, guess.rest_sd, unit)
             lines += [f"            {guess.note}"] if guess.note else []
     notes = [guess.note for guess in results.predictions.values()]
     if all(guess.rmse is None for guess in results.predictions.values()) and any(notes):

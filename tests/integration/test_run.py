@@ -213,11 +213,11 @@ def test_a_measured_shot_is_thrown_again(sample: curlshot.Run) -> None:
 
 
 def test_what_is_unknown_says_why(sample: curlshot.Run) -> None:
-    warnings = ("restitution: no hit seen", "friction: no glide")
+    warnings = ("restitution: no hit detected", "friction: no glide")
     bare = replace(sample.results, restitution=Estimate(), friction=Friction(), warnings=warnings)
     run = replace(sample, results=bare)
     assert (
-        str(run.e) == "— (restitution: no hit seen)"
+        str(run.e) == "— (restitution: no hit detected)"
         and str(run.friction) == "— (friction: no glide)"
     )
     assert re.search(r"e</th><td[^>]*>— \(restitution", run._repr_html_())

@@ -415,7 +415,7 @@ def test_a_stone_that_is_pushed_on_its_way_to_the_hit() -> None:
     assert found.shot_fit is None
     assert found.restitution.value == pytest.approx(0.83, abs=0.02)
     (why,) = [text for text in found.warnings if "whole shot" in text]
-    assert "something else than ice and hits moves a stone" in why
+    assert "something other than ice and hits moves a stone" in why
     assert found.methods["shot_fit"].note == why
     for name in ("local", "finite-differences"):
         assert "friction between the stones" in str(found.methods[name].stone_friction.note)

@@ -56,7 +56,7 @@ def test_a_single_picture_is_large_and_has_no_course_in_time() -> None:
     picture, above = (ax for part in figure.subfigs for ax in part.axes)
     figure.draw_without_rendering()
     assert picture.get_window_extent().width > 1.5 * above.get_window_extent().width
-    assert above.get_title("left") == "from above"
+    assert above.get_title("left") == "top view"
 
 
 @pytest.mark.parametrize("turned", [False, True])

@@ -25,8 +25,11 @@ from curlshot.tests.helpers.report.shots import BARE, SHOT
 def test_a_shot_says_why_it_does_not_tell_e_or_friction(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    unseen, short = "restitution: no hit seen", "friction: no stone glides freely for long enough"
-    rub = "friction between the stones not told: 0.2, as in the fit of the whole shot"
+    unseen, short = (
+        "restitution: no hit detected",
+        "friction: not identifiable, no stone glides freely for long enough",
+    )
+    rub = "friction between the stones not identifiable: 0.2, as in the shot fit"
     told = replace(SHOT, warnings=(rub, "the friction differs from glide to glide"))
     bare = replace(BARE, warnings=(unseen, "D is not followed", rub, short))
     no_hit = replace(SHOT, restitution=Estimate(), warnings=(unseen, short))
@@ -80,7 +83,7 @@ def test_one_shot_says_that_its_scatter_is_assumed(
         shot = replace(SHOT, restitution=Estimate(value, 0.01))
         write_results(shot, tmp_path / name / "results.json")
         assert main(["season", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
-        said = capsys.readouterr().out.count("may scatter by 0.05 or so, as assumed")
+        said = capsys.readouterr().out.count("assumed to be about 0.05")
         assert said == (1 if name == "one" else 0)
 
 
@@ -91,7 +94,7 @@ def test_friction_below_zero_is_named(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["season", str(tmp_path), "-o", str(tmp_path / "out")]) == 0
     warnings = [line for line in capsys.readouterr().out.splitlines() if "warning" in line]
     assert len(warnings) == 1
-    assert "bad-one: μ = −0.0040 ± 0.0010 cannot be" in warnings[0]
+    assert "bad-one: μ = −0.0040 ± 0.0010 is impossible" in warnings[0]
 
 
 def test_a_shot_that_is_there_twice_counts_once(

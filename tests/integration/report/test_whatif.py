@@ -24,7 +24,7 @@ def test_the_heat_map_shows_where_the_thrown_stone_ends(centre: tuple[float, flo
     assert float(heat.sum()) / 4 == pytest.approx(100, abs=10)
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     # B is never hit; what lies out of view has no entry.
-    at_home = ["as it lay before", r"\$C where hit"] if centre[1] < 10 else []
+    at_home = ["before the shot", r"\$C where hit"] if centre[1] < 10 else []
     assert labels == ["median of A", *at_home]
     drawn = [patch.center for patch in ax.patches if isinstance(patch, Circle)]
     assert (0.5, 0.5) in drawn and (0.0, -5.0) not in drawn

@@ -90,7 +90,7 @@ def test_of_a_low_camera_overhead_the_height_can_be_said() -> None:
         places = camera.ice(path.at(camera.t).project(caps), height=0.12)
         off.append(float(np.hypot(*(places - caps[:, :2]).T).max()))
         assert worst(track, path) < 0.003
-    assert any("give it as `camera_height`" in w for w in follow(path, duration=0.4)[0].warnings)
+    assert any("give `camera_height`" in w for w in follow(path, duration=0.4)[0].warnings)
     assert not track.warnings
     assert off[0] > 0.008 and off[1] < 0.0025
 
