@@ -160,10 +160,16 @@ class VideoConfig(_Section):
         Whether the clip of a Tracker project is measured, not what is marked in it.
     tab : str, optional
         Tab of a Tracker project that has several.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.VideoConfig(fps=30.0, frames=(10, None)).frames
+    (10, None)
     """
 
     fps: float | None = setting(
-        None, "rate of pictures, or of a table without times", POSITIVE.check, "1/s"
+        None, "frame rate of pictures, or of a table without times", POSITIVE.check, "1/s"
     )
     frames: tuple[int, int | None] | None = setting(
         None,
@@ -171,7 +177,7 @@ class VideoConfig(_Section):
         _tuple_of((FRAME, False), (FRAME, True)),
     )
     clip: bool = setting(
-        False, "measure the clip of a Tracker project, not what is marked in it", _YES_NO
+        False, "measure the clip of a Tracker project, not the marks in it", _YES_NO
     )
     tab: str | None = setting(None, "tab of a Tracker project that has several", _TEXT)
 
@@ -199,6 +205,12 @@ class CameraConfig(_Section):
     InputError
         More than one of stick, house and camera, or a height beside one that tells where the
         camera is.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.CameraConfig(camera_height=6.4).camera_height
+    6.4
     """
 
     stick: tuple[float, float, float, float, float] | None = setting(
@@ -227,7 +239,7 @@ class CameraConfig(_Section):
             raise InputError(f"{names} exclude each other; give one of them")
         if self.camera_height is not None and given not in ([], ["house"]):
             raise InputError(
-                f"`camera_height` is of a camera found by its house, not by `{given[0]}`"
+                f"`camera_height` belongs to a camera found by its house, not to `{given[0]}`"
             )
 
 
@@ -241,6 +253,12 @@ class StonesConfig(_Section):
         Radius of the discs, m.
     masses : mapping of str to float
         Masses by stone, in any unit, where they are not all equal.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.StonesConfig().radius
+    0.1455
     """
 
     radius: float = setting(STONE.radius, "radius of the discs", RADIUS.check, "m")
@@ -319,6 +337,12 @@ class TablesConfig(_Section):
         Names of stones to names of tracks; empty for all tracks by their own names.
     angles : mapping of str to Path
         Tables of the angles of stones, by stone.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.Config(tables=curlshot.TablesConfig(length_unit="cm")).tables.length_unit
+    'cm'
     """
 
     length_unit: str | None = setting(None, "unit of lengths in tables", _one_of(LENGTH_UNITS))
@@ -347,15 +371,25 @@ class PhysicsConfig(_Section):
         What predictions assume; values of the literature by default.
     samples : int
         Draws of restitution and frictions from the posterior of the shot.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.PhysicsConfig(friction=0.012).friction
+    0.012
     """
 
     restitution: float | None = setting(
         None, "e that predictions assume (literature: 0.83)", FRACTION.check
     )
     friction: float | None = setting(
-        None, "μ that predictions assume (literature, then what is seen)", FRICTION.check
+        None,
+        "μ that predictions assume (literature, then the motion before the hit)",
+        FRICTION.check,
     )
-    samples: int = setting(0, "draws of e and the frictions, into posterior.csv", SAMPLES.check)
+    samples: int = setting(
+        0, "number of draws of e and the frictions for posterior.csv", SAMPLES.check
+    )
 
 
 @dataclass(frozen=True)
@@ -368,10 +402,16 @@ class ReportConfig(_Section):
         Whether the annotated clip is written.
     units : str
         Unit of what coaches read: m or ft. All else is SI.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.ReportConfig(units="ft").overlay
+    True
     """
 
     overlay: bool = setting(True, "write the annotated clip", _YES_NO, option="--no-overlay")
-    units: str = setting("m", "unit of what coaches read, m or ft", _one_of(UNITS))
+    units: str = setting("m", "unit of the coach's tables, m or ft", _one_of(UNITS))
 
 
 @dataclass(frozen=True)
@@ -505,7 +545,7 @@ class Config:
         >>> for line in Config().replace(fps=25.0).to_toml().splitlines()[:3]:
         ...     print(line)
         [video]
-        fps = 25.0                # 1/s: rate of pictures, or of a table without times
+        fps = 25.0                # 1/s: frame rate of pictures, or of a table without times
         # frames =                # first and last frame of a clip to use, both included
         """
         lines: list[str] = []

@@ -4,28 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from curlshot.config import Config, refuse_clip_settings
 from curlshot.data.convert import check_conversion, write_converted
 from curlshot.data.errors import SceneError
-from curlshot.data.files import check_folder
 from curlshot.data.importers import are_tables, import_tracks
-from curlshot.data.inputs import find_inputs, named
+from curlshot.data.inputs import find_inputs, named, sample_clip
 from curlshot.data.measurement import Measurement
 from curlshot.data.progress import Progress, no_progress
-from curlshot.outcome import Run
-
-if TYPE_CHECKING:
-    import pandas as pd
+from curlshot.outcome import Run, check_target
 
 Inputs = str | Path | Sequence[str | Path]
 """A video, pictures (files, a folder or a glob), or tables of tracks."""
-
-
-def sample_clip() -> Path:
-    """Return the path of the bundled, rendered clip of the paper's shot."""
-    return Path(__file__).resolve().parent / "data" / "sample.mp4"
 
 
 def run(
@@ -60,13 +51,21 @@ def run(
     ------
     curlshot.data.errors.CurlshotError
         Where the input cannot be used; then nothing is written.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> shot = curlshot.Shot((curlshot.StoneStart("A", 0.5, 1.0),))
+    >>> curlshot.simulate(shot).sample([0.0, 0.1, 0.2]).to_csv("still.csv")
+    >>> print(curlshot.run("still.csv").restitution)
+    — (no stone moves: neither restitution nor friction)
     """
-    config = config.replace(**settings)
+    config, files = config.replace(**settings), find_inputs(named(inputs) or sample_clip())
     if out is not None:
-        check_folder(out)
-    measured = measure(named(inputs) or sample_clip(), config, progress)
+        check_target(out, files)  # before the work, not after
+    measured = measure(files, config, progress)
     done = analyse(measured, config, progress)
-    return done if out is None else done.write(out, progress)
+    return done if out is None else done.report(out, progress)
 
 
 def convert(
@@ -99,6 +98,14 @@ def convert(
     ------
     curlshot.data.errors.CurlshotError
         Where the input cannot be used, or there is no such form; then nothing is written.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> with open("tracks.csv", "w") as file:
+    ...     print("stone t x y", "A 0.0 0.5 1.0", "A 0.1 0.5 0.9", sep=chr(10), file=file)
+    >>> curlshot.convert("tracks.csv", "tracks.txt").frames
+    2
     """
     files, path = find_inputs(inputs), Path(out)
     check_conversion(files, path, over is not None)
@@ -154,35 +161,30 @@ def analyse(
     import numpy as np
     import pandas as pd
 
-    from curlshot.data.tracks import simulation_table, teams
+    from curlshot.data.tracks import simulation_table, teams, with_measured
+    from curlshot.physics import steps
     from curlshot.physics.cautions import cautions
     from curlshot.physics.estimate import estimate
     from curlshot.physics.kalman import smooth
-    from curlshot.physics.local_fit.contacts import find_contacts
-    from curlshot.physics.posterior import sample_posterior
+    from curlshot.physics.local_fit.hit_detection import detect_hits
+    from curlshot.physics.posterior import NO_SAMPLES, sample_posterior
     from curlshot.physics.prediction.forecast import predict
-    from curlshot.physics.prediction.hindcast import simulate_measured
+    from curlshot.physics.prediction.replay import simulate_measured
     from curlshot.physics.prediction.throws import along_sheet, first_hit
-    from curlshot.physics.steps import (
-        check_masses,
-        gather_results,
-        laws_to_assume,
-        times_of_hits,
-    )
 
     detections, radius = measured.detections, config.stones.radius
     if detections.empty:
         raise SceneError(f"{measured.files[0]}: no stone was found; {_way_out(config)}")
     progress("physics", 0, 1)
     stones = list(detections["stone"].unique())
-    masses = check_masses(config.stones.masses, stones) or measured.masses or None
+    masses = steps.check_masses(config.stones.masses, stones) or measured.masses or None
 
-    contacts = find_contacts(detections, radius)
+    contacts = detect_hits(detections, radius)
     fit = estimate(detections, contacts, radius=radius, masses=masses)
-    hits = times_of_hits(contacts, fit.collisions)
+    hits = steps.times_of_hits(contacts, fit.collisions)
     tracks = smooth(detections, hits, radius=radius, masses=masses, duplicates=measured.duplicates)
     replay = simulate_measured(tracks, fit, radius=radius, masses=masses)
-    laws = laws_to_assume(radius, config.physics.restitution, config.physics.friction)
+    laws = steps.laws_to_assume(radius, config.physics.restitution, config.physics.friction)
     predictions = predict(detections, tracks, fit, radius=radius, masses=masses, laws=laws)
     samples = sample_posterior(fit, config.physics.samples, np.random.default_rng(0))
 
@@ -198,7 +200,7 @@ def analyse(
         *((NO_SAMPLES,) if config.physics.samples and samples is None else ()),
         *cautions(measured, tracks, fit.friction, sheet),
     )
-    results = gather_results(
+    results = steps.gather_results(
         measured,
         fit,
         warnings=tuple(dict.fromkeys(warnings)),
@@ -208,15 +210,20 @@ def analyse(
         posterior=samples,
         teams={stone: team for stone, team in team_of.items() if team},
         masses=masses or {},
-        sheet=house is not None,
+        origin_at_tee=house is not None,
     )
     simulations = [
         simulation_table(table, model, team_of) for model, table in replay.samples.items()
     ]
+    cameras = None
+    if measured.cameras:
+        from curlshot.vision.optics.camera import camera_table
+
+        cameras = camera_table(measured.cameras)
     progress("physics", 1, 1)
     return Run(
-        tracks,
-        _camera_table(measured),
+        with_measured(tracks, measured.table),
+        cameras,
         results,
         pd.concat(simulations, ignore_index=True) if simulations else simulation_table(None, ""),
         house=house,
@@ -227,21 +234,9 @@ def analyse(
     )
 
 
-NO_SAMPLES = "no samples: the shot shows neither restitution nor friction"
-
-
-def _camera_table(measured: Measurement) -> pd.DataFrame | None:
-    """Return the table of ``camera.csv``; None for tables of tracks."""
-    if not measured.cameras:
-        return None
-    from curlshot.vision.optics.camera import camera_table
-
-    return camera_table(measured.cameras)
-
-
 def _way_out(config: Config) -> str:
     """Return what to do where no stone was found, by how the camera was known."""
     for name in ("stick", "camera"):
         if getattr(config.camera, name) is not None:
-            return f"`check` shows what was looked at; check `radius` and `{name}`"
-    return "`check` shows where the house was taken to be, and `house` points at another"
+            return f"`check` shows the frames; verify `radius` and `{name}`"
+    return "`check` shows the house that was found; `house` corrects it"

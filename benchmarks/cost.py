@@ -47,7 +47,7 @@ PARTS = {
     "stones, placed in the end": "curlshot.vision.association.watch.Watch.finish",
     "association": "curlshot.vision.track.follow",
     "angles": "curlshot.vision.track.angles_in_parts",
-    "hits": "curlshot.physics.local_fit.contacts.find_contacts",
+    "hits": "curlshot.physics.local_fit.hit_detection.detect_hits",
     "filter": "curlshot.physics.kalman.smoothed",
 }
 """Parts of the work and the functions that do it; none calls another."""

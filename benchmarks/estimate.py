@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from curlshot.benchmarks.simulate import house, peer_rates, seconds, single, thrown_often
 from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import Estimates, estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import Local, estimate_locally
 from curlshot.physics.simulator.many import simulate_many
 from curlshot.physics.simulator.simulate import simulate
@@ -147,11 +147,11 @@ def honesty(name: str, values: Floats, errors: Floats, truth: Floats) -> list[Ro
 def estimates(whole: int, local: int, first: int) -> list[Row]:
     """Estimates of many random shots: `whole` of them by both ways, further ones locally."""
     found: list[tuple[Draw, Estimates]] = [
-        (shot, estimate(shot.seen, find_contacts(shot.seen, RADIUS), radius=RADIUS))
+        (shot, estimate(shot.seen, detect_hits(shot.seen, RADIUS), radius=RADIUS))
         for shot in draws(whole, first)
     ]
     beside: list[tuple[Draw, Local]] = [(shot, done.local) for shot, done in found] + [
-        (shot, estimate_locally(shot.seen, find_contacts(shot.seen, RADIUS), radius=RADIUS))
+        (shot, estimate_locally(shot.seen, detect_hits(shot.seen, RADIUS), radius=RADIUS))
         for shot in draws(local - whole, first + whole)
     ]
     hits = [len(done.collisions) == shot.hits for shot, done in beside]
@@ -163,14 +163,16 @@ def estimates(whole: int, local: int, first: int) -> list[Row]:
         [(d.restitution.value, d.restitution.stderr, s.restitution) for s, d in beside]
     )
     e_whole = columns(
-        [(d.restitution.value, d.restitution.stderr, s.restitution) for s, d in found if d.whole]
+        [(d.restitution.value, d.restitution.stderr, s.restitution) for s, d in found if d.shot_fit]
     )
     e_told = columns([(d.restitution.value, d.restitution.stderr, s.restitution) for s, d in found])
-    mu = columns([(d.friction.value, d.friction.stderr, s.friction) for s, d in found if d.whole])
+    mu = columns(
+        [(d.friction.value, d.friction.stderr, s.friction) for s, d in found if d.shot_fit]
+    )
     both = [
         (d.restitution.stderr or np.nan) / (d.local.restitution.stderr or np.nan)
         for _, d in found
-        if d.whole
+        if d.shot_fit
     ]
     sharper = float(np.nanmedian(both))
     return [
@@ -191,7 +193,7 @@ def sharpness(count: int = 12) -> list[Row]:
     errors, off = [], []
     for _ in range(count):
         seen = _watch(short, rng, sd=0.01)
-        done = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+        done = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
         errors.append((done.local.restitution.stderr, done.restitution.stderr))
         long = estimate_locally(_watch(glide, rng, sd=0.01), (), radius=RADIUS)
         off.append(abs((long.friction.value or np.nan) / 0.0109 - 1))
@@ -209,7 +211,7 @@ def sharpness(count: int = 12) -> list[Row]:
 def speed() -> list[Row]:
     """Processor time, least of some repeats."""
     seen = _watch(hit_motion(1.5, 0.06, others=[Start(0.02, 0.8)]), np.random.default_rng(2))
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     fit = seconds(lambda: estimate(seen, contacts, radius=RADIUS), 2)
     houses = [house(seed) for seed in range(10)]
     one = float(np.mean([seconds(lambda s=shot: simulate(s), 10) for shot in houses]))  # type: ignore[misc]

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from curlshot.config import VideoConfig
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.vision.detection.stones import plain_disc
 from curlshot.vision.optics.stick import stick_cameras
 from curlshot.vision.track import track_stones
@@ -181,7 +181,7 @@ def followed(sequence: Sequence, folder: Path) -> tuple[pd.DataFrame, pd.DataFra
     start = time.process_time()
     detections = track_stones(clip, stick_cameras(clip, STICK), disc=disc).detections
     spent = (time.process_time() - start) / FRAMES
-    hits = find_contacts(detections, disc.radius)
+    hits = detect_hits(detections, disc.radius)
     return detections, smooth(detections, hits, radius=disc.radius), spent
 
 

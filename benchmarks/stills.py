@@ -146,7 +146,7 @@ def score_stills(shared: Path, sheet: Path | None) -> None:
         if group == "labelled":
             labelled.append(still.found)
             elsewhere += still.fit is not None and not still.found
-            if still.whole:
+            if still.shot_fit:
                 whole.append(still.found)
         elif not len(still.boxes):
             unlabelled.append(still.fit is not None)

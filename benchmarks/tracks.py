@@ -20,7 +20,7 @@ from curlshot.benchmarks.kinds import KINDS, Kind, clip_of
 from curlshot.benchmarks.stones import cameras_of_table
 from curlshot.data.sheet import STONE
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.synthetic import Truth
 from curlshot.synthetic.scoring import score_tracks
 from curlshot.vision.camera_path.follow_house import follow_house
@@ -54,7 +54,7 @@ BARS = {
 def tracks_of(clip: Video, cameras: Sequence[Camera]) -> pd.DataFrame:
     """Give what ``tracks.csv`` of a clip holds."""
     detections = track_stones(clip, cameras).detections
-    hits = find_contacts(detections, STONE.radius)
+    hits = detect_hits(detections, STONE.radius)
     return smooth(detections, hits, radius=STONE.radius)
 
 

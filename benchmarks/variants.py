@@ -24,10 +24,10 @@ from curlshot import pipeline
 from curlshot.data.results import Estimate, Prediction
 from curlshot.outcome import Run
 from curlshot.physics.estimate import Estimates, estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.prediction.forecast import predict
 from curlshot.physics.prediction.laws import measured_laws
-from curlshot.physics.whole_shot.priors import Priors, literature
+from curlshot.physics.shot_fit.priors import Priors, literature
 from curlshot.synthetic.clip import Truth, cached_clip
 from curlshot.synthetic.scenes import sample_variant
 
@@ -70,7 +70,7 @@ def row(seed: int) -> tuple[str, bool]:
 def foretold(done: Run, detections: pd.DataFrame) -> Prediction:
     """Predict the shot from what was seen before its first hit, with the laws as measured."""
     results = done.results
-    found = estimate(detections, find_contacts(detections, results.radius), radius=results.radius)
+    found = estimate(detections, detect_hits(detections, results.radius), radius=results.radius)
     laws = as_measured(found, results.radius)
     return predict(detections, done.tracks, found, radius=results.radius, laws=laws)["frictional"]
 
@@ -84,10 +84,10 @@ def as_measured(shot: Estimates, radius: float) -> Priors:
     told = Estimate(shot.friction.value, shot.friction.stderr)
     friction = usual if told.value is None else told
     known = Priors(laws.restitution, laws.stone_friction, friction, laws.size)
-    if shot.whole is None:
+    if shot.shot_fit is None:
         return known
     names = ("slope", "v_c", "turn", "loss", "inertia")
-    return replace(known, **{name: Estimate(shot.whole[name].value, 0.0) for name in names})
+    return replace(known, **{name: Estimate(shot.shot_fit[name].value, 0.0) for name in names})
 
 
 def _places(errors: Mapping[str, float | None], stated: Mapping[str, float | None]) -> str:

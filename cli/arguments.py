@@ -42,7 +42,10 @@ def what_if_folder(arguments: argparse.Namespace, shot: Path) -> Path:
     from curlshot.physics.prediction.restart import measured_shot
 
     if arguments.out is not None or not measured_shot(shot):
-        return out_folder(arguments, shot)
+        folder = out_folder(arguments, shot)
+        if measured_shot(shot) and folder.resolve() == shot.parent.resolve():
+            raise InputError(f"{folder}: holds the run itself; name another folder with `out`")
+        return folder
     return check_folder(f"{shot.resolve().parent.name.removesuffix('-curlshot')}-whatif")
 
 

@@ -47,7 +47,7 @@ def _spelled(error: UnicodeError) -> tuple[str, int]:
     return "".join(_SPELLED.get(letter, "?") for letter in letters), error.end
 
 
-NO_MEMORY = "not enough memory; try fewer or smaller pictures, or fewer clips at once"
+NO_MEMORY = "not enough memory; try fewer or smaller frames, or fewer clips at once"
 
 
 def guarded(work: Callable[[], str], bars: Bars) -> int:
@@ -77,7 +77,7 @@ def guarded(work: Callable[[], str], bars: Bars) -> int:
     except KeyboardInterrupt as stop:
         with suppress(OSError):  # a terminal that was closed takes no more
             bars.close()
-            print("curlshot: stopped; what was under way is not written", file=sys.stderr)
+            print("curlshot: stopped; unfinished output is not written", file=sys.stderr)
         return 128 + (stop.number if isinstance(stop, _Stopped) else signal.SIGINT)
     bars.close()
     try:

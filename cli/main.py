@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,13 +18,12 @@ from curlshot.data.errors import CurlshotError, InputError
 from curlshot.data.files import staged
 from curlshot.data.garbage import collect_seldom
 from curlshot.data.importers import refuse_clips
-from curlshot.data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs
-from curlshot.data.run_folders import find_results, read_runs
+from curlshot.data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs, sample_clip
+from curlshot.data.messages import as_options
 from curlshot.data.version import VERSION
-from curlshot.pipeline import analyse, convert, measure, run, sample_clip
+from curlshot.pipeline import analyse, convert, measure, run
 
 if TYPE_CHECKING:
-    from curlshot.data.results import Results
     from curlshot.outcome import Run
 
 CHECK_DPI = 110
@@ -45,15 +45,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     return guarded(lambda: WORK[arguments.command](arguments, bars), bars)
 
 
-def _summary(done: Run, folder: Path) -> str:
-    from curlshot.data.coach_units import UNITS
-    from curlshot.report.summary import summary
-
-    marked = done.cameras is None
-    unit = UNITS[done.config.report.units]
-    return summary(done.results, done.tracks, folder, done.house, unit, marked=marked)
-
-
 def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
     inputs = arguments.inputs or [sample_clip()]
     files = find_inputs(inputs)
@@ -63,7 +54,7 @@ def _do_run(arguments: argparse.Namespace, bars: Bars) -> str:
         return _run_season(arguments, files, bars)
     folder = out_folder(arguments, inputs[0])
     done = run(inputs, folder, config_of(arguments), bars)
-    return _summary(done, folder)
+    return done.summary()
 
 
 def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars) -> str:
@@ -76,37 +67,28 @@ def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars
     if not done:
         name, error = next(iter(failed.items()))
         raise InputError(f"none of {len(clips)} clips could be used; {name}: {error}")
-    runs = {name: run.results for name, run in done.items()}
-    unused = {name: f"not used: {one_line(str(why))}" for name, why in failed.items()}
-    return _season_summary(runs, folder, {name: folder / name for name in runs}, unused)
+    unused = {name: f"not used: {one_line(as_options(str(why)))}" for name, why in failed.items()}
+    return _season_summary(done, folder, unused)
 
 
 def _do_season(arguments: argparse.Namespace, _: Bars) -> str:
-    files = find_results(arguments.runs)
-    folders = {name: file.parent for name, file in files.items()}
-    return _season_summary(read_runs(files), Path(arguments.out or "season"), folders, {})
+    return _season_summary(arguments.runs, Path(arguments.out or "season"), {})
 
 
 def _season_summary(
-    runs: Mapping[str, Results],
-    folder: Path,
-    folders: Mapping[str, Path],
-    unused: Mapping[str, str],
+    runs: Sequence[str] | Mapping[str, Run], folder: Path, unused: Mapping[str, str]
 ) -> str:
-    """Say what many shots tell, which do not count, and where the page is."""
-    from curlshot.report.summary import season_text
-    from curlshot.season.together import season
+    """Say what many shots show, which do not count, and where the page is."""
+    from curlshot.season.together import combine
 
-    together = season(runs, folder, folders, unused)
-    lines = season_text(together.shots, together.means)
-    lines += [f"{name}   {why}" for name, why in together.left_out.items()]
-    return "\n".join([*lines, f"written     {folder / 'season.html'}"])
+    together = combine(runs, folder, unused)
+    return f"{together.summary()}\nwritten     {folder / 'season.html'}"
 
 
 def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     from curlshot.data.tracks import write_table, write_tracks
     from curlshot.physics.kalman import smoothed
-    from curlshot.physics.local_fit.contacts import find_contacts
+    from curlshot.physics.local_fit.hit_detection import detect_hits
     from curlshot.report.numbers import count, warned
     from curlshot.report.write import left_by_earlier_run
     from curlshot.vision.optics.camera import camera_columns
@@ -114,7 +96,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     config, folder = config_of(arguments), out_folder(arguments, arguments.inputs[0])
     radius = config.stones.radius
     measured = measure(arguments.inputs, config.replace(clip=True), bars)
-    tracks = smoothed(measured.table, find_contacts(measured.table, radius), radius=radius)
+    tracks = smoothed(measured.table, detect_hits(measured.table, radius), radius=radius)
     with staged(folder, replaces=left_by_earlier_run(folder, measured.files)) as stage:
         write_tracks(tracks, stage / "tracks.csv", measured.table)
         write_table(camera_columns(measured.cameras), stage / "camera.csv")
@@ -145,7 +127,7 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     done = analyse(measured, config, bars)
     with staged(folder, replaces=left_by_earlier_run(folder, measured.files)) as stage:
         write_estimates(stage, done)
-    return _summary(done, folder)
+    return replace(done, out=folder).summary()
 
 
 def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:
@@ -163,7 +145,7 @@ def _convert_each(arguments: argparse.Namespace) -> str:
     from curlshot.report.numbers import count, warned
 
     if arguments.over is not None:
-        raise InputError("`over`: one clip cannot be behind many projects; convert one at a time")
+        raise InputError("`over`: one clip does not fit many projects; convert one at a time")
     config, files = config_of(arguments), find_inputs(arguments.inputs)
     targets = targets_of(files, arguments.out)
     refused, written = [], []
@@ -183,46 +165,34 @@ def _convert_each(arguments: argparse.Namespace) -> str:
 def _do_simulate(arguments: argparse.Namespace, bars: Bars) -> str:
     import json
 
-    from curlshot.physics.prediction.restart import (
-        measured_shot,
-        read_start,
-        sampled,
-        shot_file,
-        throw_often,
-    )
-    from curlshot.physics.prediction.what_if import Changes, changed
-    from curlshot.physics.simulator.simulate import simulate
+    from curlshot.physics.prediction.restart import measured_shot, shot_file
     from curlshot.report.numbers import warned
-    from curlshot.report.summary import odds_text, simulation_json, simulation_text
+    from curlshot.report.summary import odds_text, simulation_json
     from curlshot.report.whatif import write_odds, write_simulated
+    from curlshot.simulated import simulate
 
     shot = shot_file(arguments.shot)
     folder = what_if_folder(arguments, shot)
-    start = read_start(shot, folder)
-    changes = Changes(
-        arguments.restitution,
-        arguments.friction,
-        arguments.speed,
-        arguments.spin,
-        arguments.aim_offset,
+    done = simulate(
+        shot,
+        speed=arguments.speed,
+        spin=arguments.spin,
+        aim_offset=arguments.aim_offset,
+        restitution=arguments.restitution,
+        friction=arguments.friction,
     )
-    start = changed(start, changes)
-    simulation = simulate(start.shot)
-    table = sampled(simulation, arguments.fps, start.shot.impact.name)
+    table = done.table(arguments.fps)
     throws = arguments.samples
     if throws is None:
         throws = MEASURED_THROWS if measured_shot(shot) else 0
-    outcome = simulation_json(simulation)
-    written = [folder / name for name in ("simulation.csv", "plan.png")]
-    lines = [simulation_text(simulation, written)]
-    warnings = [*start.assumed.values()]
+    outcome = simulation_json(done.simulation)
+    lines = [done.summary([folder / name for name in ("simulation.csv", "plan.png")])]
+    warnings = [*done.warnings]
     with staged(folder, replaces=WHAT_IF) as stage:
-        write_simulated(stage, start, simulation, table)
+        write_simulated(stage, done.start, done.simulation, table)
         if throws:
-            outcomes, odds = throw_often(
-                start, changes, throws, arguments.throw_sd, shot.name, bars
-            )
-            write_odds(stage, start, outcomes, odds)
+            outcomes, odds = done.throw(throws, arguments.throw_sd, bars)
+            write_odds(stage, done.start, outcomes, odds)
             outcome = {"nominal": outcome, **odds}
             lines += odds_text(odds, [folder / name for name in WHAT_IF])
             warnings = odds["warnings"]

@@ -12,15 +12,13 @@ from curlshot.data.limits import (
     FRICTION,
     HEIGHT,
     MOST_THROWS,
+    OFFSET,
     POSITIVE,
     RADIUS,
     SAMPLES,
-    Limits,
 )
 from curlshot.data.sheet import STONE
 from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS
-
-OFFSETS = Limits(-5.0, 5.0, "a distance in metres, -5 to 5")
 
 
 def radius_option(parser: argparse.ArgumentParser) -> None:
@@ -39,8 +37,10 @@ def config_option(parser: argparse.ArgumentParser) -> None:
         "--config",
         type=Path,
         metavar="FILE.toml",
-        help="settings of a rink or a camera; options of the command line win (curlshot config"
-        " prints all of them)",
+        help=(
+            "settings of a rink or a camera; options of the command line override them (curlshot"
+            " config prints all of them)"
+        ),
     )
 
 
@@ -61,7 +61,9 @@ def rate_option(parser: argparse.ArgumentParser, rate: str, usual: float | None 
     parser.add_argument("--fps", type=values.within(POSITIVE), default=usual, help=rate)
 
 
-def clip_options(parser: argparse.ArgumentParser, rate: str = "rate of pictures, 1/s (25)") -> None:
+def clip_options(
+    parser: argparse.ArgumentParser, rate: str = "frame rate of pictures, 1/s (25)"
+) -> None:
     """Add what may be said of a clip; `rate` says of what that is."""
     radius_option(parser)
     rate_option(parser, rate)
@@ -81,8 +83,10 @@ def clip_options(parser: argparse.ArgumentParser, rate: str = "rate of pictures,
         "--house",
         type=values.house,
         metavar="FRAME:XC,YC,X1,Y1,X2,Y2",
-        help="where the house is, if it is not found: the tee and two points on the outer edge of"
-        " the 12-ft ring, px, in that frame (FRAME: may be left out: the first)",
+        help=(
+            "where the house is, if it is not found automatically: the tee and two points on the"
+            " outer edge of the 12-ft ring, px, in that frame (FRAME: may be left out: the first)"
+        ),
     )
     parser.add_argument(
         "--camera",
@@ -95,8 +99,10 @@ def clip_options(parser: argparse.ArgumentParser, rate: str = "rate of pictures,
         "--camera-height",
         type=values.within(HEIGHT),
         metavar="METRES",
-        help="how high the camera hangs above the ice, to 0.1 m, where the view does not tell it:"
-        " from straight above it does not",
+        help=(
+            "height of the camera above the ice, to 0.1 m; needed where the view does not"
+            " determine it, as from straight above"
+        ),
     )
 
 
@@ -114,10 +120,10 @@ def what_if_options(parser: argparse.ArgumentParser) -> None:
     )
     change.add_argument(
         "--aim-offset",
-        type=values.within(OFFSETS),
+        type=values.within(OFFSET),
         default=0.0,
         metavar="METRES",
-        help="move the way of the thrown stone to its left, or right if negative, m",
+        help="shift the path of the thrown stone to its left, or right if negative, m",
     )
     change.add_argument(
         "--speed",
@@ -141,7 +147,7 @@ def what_if_options(parser: argparse.ArgumentParser) -> None:
         "--throw-sd",
         type=values.throw_sd,
         metavar="V,A",
-        help="what players are off by when they let go: m/s, rad (0.0076,0.0018)",
+        help="standard deviations of the throw: m/s, rad (0.0076,0.0018)",
     )
 
 
@@ -163,8 +169,10 @@ def assumption_options(parser: argparse.ArgumentParser) -> None:
         "--samples",
         type=values.whole(SAMPLES),
         metavar="N",
-        help="draw e, μ and the friction between stones N times from what the shot tells:"
-        " posterior.csv, quantiles in results.json",
+        help=(
+            "draw e, μ and the friction between stones N times from their posterior:"
+            " posterior.csv, quantiles in results.json"
+        ),
     )
 
 
@@ -173,7 +181,7 @@ def units_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--units",
         choices=tuple(UNITS),
-        help="of what coaches read (m); all else is SI",
+        help="unit of the coach's tables (m); all else is SI",
     )
 
 
@@ -210,5 +218,5 @@ def table_options(parser: argparse.ArgumentParser) -> None:
         type=values.pair,
         action="append",
         metavar="STONE=FILE",
-        help="how a stone is turned: an export of a point of its edge about its centre",
+        help="angle of a stone: an export of a point of its edge about its centre",
     )

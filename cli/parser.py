@@ -50,8 +50,10 @@ def command_line(version: str) -> argparse.ArgumentParser:
     """Build the parser of the whole command line; ``command`` in its answer names the work."""
     parser = _Parser(
         prog="curlshot",
-        description="From a clip of a curling shot to its physics: tracks, restitution, friction, "
-        "and the shot simulated again.",
+        description=(
+            "From a clip of a curling shot to its physics: tracks, restitution, friction, and a"
+            " simulation of the shot."
+        ),
         epilog="examples:\n"
         "  curlshot run                               the bundled sample clip\n"
         "  curlshot run shot.mp4 -o shot              a clip, into the folder shot\n"
@@ -73,7 +75,7 @@ def _run(commands: Any) -> None:
     parser = _command(
         commands,
         "run",
-        "the whole road: clip or tracks to e, μ, simulation and report",
+        "the whole pipeline: clip or tracks to e, μ, simulation and report",
         "  curlshot run                                     the bundled sample\n"
         "  curlshot run shot.mp4                            a clip that shows the house\n"
         "  curlshot run frames/ --fps 25                    a folder of pictures\n"
@@ -93,7 +95,7 @@ def _run(commands: Any) -> None:
         "  curlshot run old/tracks.csv                      earlier tracks\n",
     )
     parser.add_argument("inputs", nargs="*", metavar="INPUT", help="clip, pictures or tables")
-    clip_options(parser, "rate of pictures (25), or of a table without times, 1/s")
+    clip_options(parser, "frame rate of pictures (25), or of a table without times, 1/s")
     mass_option(parser)
     table_options(parser)
     no_house_option(parser)
@@ -103,7 +105,7 @@ def _run(commands: Any) -> None:
         "--clip",
         action="store_true",
         default=None,
-        help="measure the clip of a Tracker project, not what is marked in it",
+        help="measure the clip of a Tracker project, not the marks in it",
     )
     assumption_options(parser)
     units_option(parser)
@@ -118,7 +120,7 @@ def _run(commands: Any) -> None:
         "--jobs",
         type=values.whole(JOBS),
         metavar="N",
-        help="of many clips, how many at once (as many as there are processors)",
+        help="number of clips to run at once (as many as there are processors)",
     )
 
 
@@ -140,7 +142,7 @@ def _check(commands: Any) -> None:
     parser = _command(
         commands,
         "check",
-        "a contact sheet: can the camera and the stones found in this clip be trusted?",
+        "a contact sheet to verify the camera and the stones found in this clip",
         "  curlshot check shot.mp4                  shot-curlshot/check.png\n"
         "  curlshot check shot.mp4 --house 640,360,460,360,640,180\n",
     )
@@ -190,7 +192,7 @@ def _convert(commands: Any) -> None:
     parser = _bare_command(
         commands,
         "convert",
-        "tracks into another form, by the ending of OUT",
+        "convert tracks; the ending of OUT gives the format",
         "  curlshot convert shot.trk shot.csv               a Tracker project to a table\n"
         "  curlshot convert shot-curlshot/tracks.csv a.txt  text for Tracker's import\n"
         "  curlshot convert A.txt B.txt shot.parquet        needs pyarrow\n"
@@ -198,7 +200,7 @@ def _convert(commands: Any) -> None:
         "                                                   a Tracker project over the clip\n"
         "  curlshot convert shot-curlshot/tracks.csv shot.trz --over shot.mp4\n"
         "                                                   the same, with the clip in the file\n"
-        "  curlshot convert season/*.trk .csv               each to a table beside it\n"
+        "  curlshot convert season/*.trk .csv               each to a table in its folder\n"
         "  curlshot convert season/*.trz tables/.csv        or in another folder\n",
     )
     parser.add_argument("inputs", nargs="+", metavar="IN", help="tables of tracks, projects")
@@ -208,7 +210,7 @@ def _convert(commands: Any) -> None:
         help="a name that ends with .txt, .csv, .parquet, .trk or .trz; or only the ending, for a"
         " file of its own for each IN",
     )
-    parser.add_argument("--over", metavar="CLIP", help="the clip that a project shows")
+    parser.add_argument("--over", metavar="CLIP", help="the clip of the project")
     table_options(parser)
     tab_option(parser)
     config_option(parser)
@@ -219,7 +221,7 @@ def _simulate(commands: Any) -> None:
     parser = _command(
         commands,
         "simulate",
-        "a shot of your own, or a measured one with something changed, and where it ends",
+        "simulate a shot of your own, or a measured one with changes, and where it ends",
         "  curlshot simulate SHOT.toml\n"
         "  curlshot simulate SHOT.toml --json --fps 50\n"
         "  curlshot simulate SHOT.toml --samples 2000           thrown 2000 times as players do\n"

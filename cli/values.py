@@ -8,7 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from curlshot.data.limits import POSITIVE, Limits, has_length
+from curlshot.data.errors import InputError
+from curlshot.data.limits import POSITIVE, SPEED, SPIN, Limits, has_length
 
 if TYPE_CHECKING:
     from curlshot.physics.prediction.what_if import Amount
@@ -46,28 +47,22 @@ def folder(text: str) -> Path:
 
 def amount(text: str) -> Amount:
     """Read a number, or a factor such as ``1.1x``."""
-    from curlshot.physics.prediction.what_if import Amount
-
-    return Amount(*_or_factor(text, Limits(-20.0, 20.0, "a number, -20 to 20")))
+    return _or_factor(text, SPIN)
 
 
 def speed(text: str) -> Amount:
     """Read a speed, m/s, or a factor such as ``1.1x``."""
-    from curlshot.physics.prediction.what_if import Amount
-
-    return Amount(*_or_factor(text, Limits(1e-6, 10.0, "a speed above 0, at most 10 m/s")))
+    return _or_factor(text, SPEED)
 
 
-def _or_factor(text: str, limits: Limits) -> tuple[float, bool]:
-    """Read a number between two bounds, and whether it is a factor."""
-    value = text.removesuffix("x")
+def _or_factor(text: str, limits: Limits) -> Amount:
+    """Read a number between two bounds, or a factor."""
+    from curlshot.physics.prediction.what_if import amount_of
+
     try:
-        return number(value, limits), value != text
-    except argparse.ArgumentTypeError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not {limits.what}, nor a factor such as 1.1x, at most {limits.high:g}x"
-            f"{_with_point(text)}"
-        ) from None
+        return amount_of(text, limits)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(f"{error}{_with_point(text)}") from None
 
 
 def whole(limits: Limits) -> Callable[[str], int]:

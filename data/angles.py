@@ -219,9 +219,9 @@ def _refuse_wandering(path: Path, distance: Array) -> None:
     near, far = np.quantile(known, _NEARLY_ALL) if len(known) else (0.0, 0.0)
     if far > _WANDERS * near:
         raise InputError(
-            f"{path}: the point is {near:.3g} to {far:.3g} from the origin, so it is none of a"
-            " stone's edge; put the origin into the stone's centre (Coordinate System > Reference"
-            " Frame)"
+            f"{path}: the point is {near:.3g} to {far:.3g} from the origin, so it is not on the"
+            " edge of a stone; put the origin into the centre of the stone (Coordinate System >"
+            " Reference Frame)"
         )
 
 
@@ -241,22 +241,22 @@ def _unit(
         shown = "deg"
     if shown is not None:
         other = angle_unit is not None and angle_unit != shown
-        note = f"{path}: angles are in {shown}, as the file shows, not in {angle_unit}"
+        note = f"{path}: the file gives angles in {shown}, not in {angle_unit}"
         return shown, [note] if other else []
     if angle_unit is not None:
         return angle_unit, []
     rate = spin_rate(t[known], theta[known])
     if rate > FASTEST_SPIN:
         return "deg", [
-            f"{path}: angles taken in degrees, they change too fast for radians"
-            " (`angle_unit` to say otherwise)"
+            f"{path}: angles read in degrees, since they change too fast for radians"
+            " (`angle_unit` overrides this)"
         ]
     if rate > _DOUBTFUL_SPIN:
         raise InputError(
-            f"{path}: angles in degrees or in radians? they change by {rate:.0f} a second; say it"
-            " with `angle_unit`, or export x and y too"
+            f"{path}: angles in degrees or in radians? they change by {rate:.0f} a second; give"
+            " `angle_unit`, or export x and y too"
         )
-    return "rad", [f"{path}: angles taken in radians (`angle_unit` to say otherwise)"]
+    return "rad", [f"{path}: angles read in radians (`angle_unit` overrides this)"]
 
 
 def _unit_by_place(theta: Array, direction: Array) -> str | None:

@@ -55,7 +55,8 @@ def unpack(
     packed = sum(entry.compress_size for entry in entries)
     if promised > LARGEST_CLIP or promised > max(SMALL, MOST_PACKED * packed):
         raise InputError(
-            f"{path}: its clip would unpack to {promised / 1e6:.0f} MB, which no clip has"
+            f"{path}: its clip would unpack to {promised / 1e6:.0f} MB, which is too large for a"
+            " clip"
         )
     files = []
     left = promised

@@ -42,7 +42,7 @@ class Unit:
             return f"{metres * self.fine_per_metre:.{self.fine_decimals}f} {self.fine}"
         return f"{metres * self.small_per_metre:.1f} {self.small}"
 
-    def told(self, text: str) -> str:
+    def converted(self, text: str) -> str:
         """Write a text's lengths in m and speeds in m/s in this unit, to as many decimals."""
 
         def other(found: re.Match[str]) -> str:

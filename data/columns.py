@@ -80,7 +80,7 @@ def times_of(
         said = abbreviated(bracket)
         if TIME_UNITS.get(said, 1.0) != 1.0:
             raise InputError(
-                f"{table.path}: some times are in {said}, others as 0:01.25; write all in one way"
+                f"{table.path}: some times are in {said}, others as 0:01.25; use one form for all"
             )
     if bracket and (minutes or bracket.lower() in TIME_NAMES):
         bracket = None  # nor does time (t) tell a unit
@@ -97,13 +97,13 @@ def times_of(
     if whole and not (bracket or minutes) and (fps is not None or decimals == 0):
         if fps is None:
             raise InputError(
-                f"{table.path}: the times are whole numbers: frames? give their rate (`fps`), 1 if"
-                " they are seconds; for milliseconds name the column t (ms)"
+                f"{table.path}: the times are whole numbers: frames? give their rate (`fps`), or"
+                " 1 for seconds; for milliseconds name the column t (ms)"
             )
-        return times / fps, None, [f"{table.path}: the times are whole numbers; taken as frames"]
+        return times / fps, None, [f"{table.path}: the times are whole numbers; read as frames"]
     warnings: list[str] = []
     if fps is not None:
-        warnings.append(f"{table.path}: has times of its own; the frame rate given is not used")
+        warnings.append(f"{table.path}: has times of its own; the given frame rate is not used")
     return times * unit, decimals if unit == 1.0 else None, warnings
 
 

@@ -131,9 +131,9 @@ def _write_project(measured: Measurement, path: Path, projected: Projected | Non
         projected = Projected(view, view.coordinates.pixels(detections["frame"], places), 0.0)
     else:
         note = (
-            f"{path}: Tracker knows no perspective; at the 12-ft ring it shows places up to"
-            f" {100 * projected.offset:.1f} cm off (exact ones are in the file, and read back"
-            " from it)"
+            f"{path}: Tracker has no perspective; at the 12-ft ring its places are up to"
+            f" {100 * projected.offset:.1f} cm wrong (the file also holds the exact ones, which"
+            " are read back)"
         )
         measured = replace(measured, warnings=(*measured.warnings, note))
     project = project_xml(detections, projected.view, projected.marks, simulations)

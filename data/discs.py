@@ -56,10 +56,10 @@ def refuse_no_discs(
         inside = apart[apart < OVERLAP * 2 * radius]
         if len(inside) >= OFTEN:
             raise InputError(
-                f"{source}: {one} and {other} come within {_length(inside.min())} of each other at"
-                f" t = {moment(inside.idxmin())}, but discs of radius {radius:g} m are"
-                f" {_length(2 * radius)} wide: {advice}, another radius (`radius`), or not both are"
-                " stones (`names`)"
+                f"{source}: {one} and {other} come within {_length(inside.min())} of each other"
+                f" at t = {moment(inside.idxmin())}, but discs of radius {radius:g} m are"
+                f" {_length(2 * radius)} wide: {advice}, another radius (`radius`), or one of them"
+                " is not a stone (`names`)"
             )
 
 

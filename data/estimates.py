@@ -1,16 +1,60 @@
-"""Values with their errors that the free glides of stones tell, parts of `data.results`."""
+"""Values with their standard errors, and what the free glides of stones show of the ice."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from curlshot.data.rounding import DASH, MINUS, plus_minus
+
+_NUMBER_TYPES = "eEfFgGn%"
+"""Last letters of a format that is of the numbers, not of the text."""
+
 
 @dataclass(frozen=True)
 class Estimate:
-    """A value with its standard error; both None where the input cannot tell."""
+    """A value with its standard error; both None where the value is unknown.
+
+    It prints as value ± standard error, rounded to what the error allows. A format of numbers,
+    such as ``.3f``, is that of both.
+
+    Attributes
+    ----------
+    value, stderr : float or None
+        Value and standard error.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> e = curlshot.Estimate(0.83373, 0.00098)
+    >>> print(e)
+    0.83373 ± 0.00098
+    >>> f"{e:.3f}"
+    '0.834 ± 0.001'
+    >>> print(curlshot.Estimate())
+    —
+    """
 
     value: float | None = None
     stderr: float | None = None
+
+    def __str__(self) -> str:
+        if self.value is None:
+            reason = getattr(self, "note", None)
+            return f"{DASH} ({reason})" if reason else DASH
+        return plus_minus(self.value, self.stderr)
+
+    def __format__(self, spec: str) -> str:
+        if self.value is None or not spec.endswith(tuple(_NUMBER_TYPES)):
+            return format(str(self), spec)
+        numbers = [self.value] if self.stderr is None else [self.value, self.stderr]
+        return " ± ".join(format(number, spec).replace("-", MINUS, 1) for number in numbers)
+
+
+@dataclass(frozen=True)
+class NotedEstimate(Estimate):
+    """An estimate with a ``note`` that says why there is none, or what it is worth."""
+
+    note: str | None = None
 
 
 @dataclass(frozen=True)
@@ -31,7 +75,7 @@ class Friction(Estimate):
 class Glide:
     """One free glide of one stone and the friction that slowed it.
 
-    ``turn`` is how its path turned (rad/s, to the left positive) at its mean ``speed`` (m/s).
+    ``turn_rate`` is that of its path (rad/s, left positive) at its mean ``speed`` (m/s).
     """
 
     stone: str
@@ -39,6 +83,6 @@ class Glide:
     t1: float
     friction: float | None
     stderr: float | None
-    turn: float | None = None
-    stderr_turn: float | None = None
+    turn_rate: float | None = None
+    stderr_turn_rate: float | None = None
     speed: float | None = None

@@ -101,12 +101,15 @@ def check_target(path: Path, inputs: Sequence[Path]) -> None:
     """
     endings = (*WRITERS, *PROJECTS)
     if path.suffix.lower() not in endings:
-        raise InputError(f"{path}: tracks are written as {', '.join(endings)}; end the name so")
+        raise InputError(
+            f"{path}: tracks can be written as {', '.join(endings)}; give the name one of these"
+            " endings"
+        )
     check_folder(path.parent, how="")
     if path.is_dir():
         raise InputError(f"{path}: is a folder; name another file to write")
     if path.resolve() in {file.resolve() for file in inputs}:
-        raise InputError(f"{path}: is what is to be converted; name another file to write")
+        raise InputError(f"{path}: is the file to convert; name another file to write")
 
 
 def read_parquet(path: Path) -> pd.DataFrame:

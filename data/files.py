@@ -79,14 +79,17 @@ def relative_path(path: Path, folder: Path) -> str:
         return path.resolve().as_posix()
 
 
-def check_folder(out: str | Path, how: str = " with -o") -> Path:
+def check_folder(out: str | Path, how: str = " with `out`") -> Path:
     """Refuse a bad place for results before an hour of work, not after; `how` to name another."""
     folder = Path(out)
     there = next(part for part in (folder, *folder.parents) if part.exists())
     if not there.is_dir():
         raise InputError(f"{there}: is a file; name a folder for the results{how}")
     if there != folder and folder.suffix.lower() in FILES:
-        raise InputError(f"{folder}: would be a folder of results; name it unlike a file{how}")
+        raise InputError(
+            f"{folder}: would be a folder of results; choose a name without the ending of a"
+            f" file{how}"
+        )
     if not os.access(there, os.W_OK | os.X_OK):
         raise InputError(f"{there}: nothing can be written here; name another folder{how}")
     return folder
@@ -137,5 +140,5 @@ def _hidden(folder: Path) -> tempfile.TemporaryDirectory[str]:
         )
     except OSError as error:
         raise InputError(
-            f"{folder}: cannot be written ({error.strerror}); name another folder with -o"
+            f"{folder}: cannot be written ({error.strerror}); name another folder with `out`"
         ) from None

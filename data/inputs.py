@@ -124,3 +124,15 @@ def _natural(path: Path) -> list[list[tuple[int, str]]]:
     """Sort key by which picture 9 comes before picture 10, and folder 9 before folder 10."""
     parts = [re.findall(r"\d+|\D+", part) for part in path.parts]
     return [[(int(p), "") if p.isdecimal() else (-1, p) for p in part] for part in parts]
+
+
+def sample_clip() -> Path:
+    """Return the path of the bundled, rendered clip of the paper's shot.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.sample_clip().name
+    'sample.mp4'
+    """
+    return Path(__file__).resolve().parent / "sample.mp4"

@@ -41,6 +41,9 @@ RADIUS = Limits(1e-3, 1.0, "a radius in metres, 0.001 to 1")
 SAMPLES = Limits(0, MOST_THROWS, f"a number of samples, 0 to {MOST_THROWS}", Integral)
 JOBS = Limits(1, 1000, "a number of clips at once, 1 to 1000", Integral)
 FRAME = Limits(0, sys.maxsize, "a number of a frame", Integral)
+OFFSET = Limits(-5.0, 5.0, "a distance in metres, -5 to 5")
+SPEED = Limits(1e-6, 10.0, "a speed above 0, at most 10 m/s")
+SPIN = Limits(-20.0, 20.0, "a number, -20 to 20")
 ANY = Limits(-sys.float_info.max, sys.float_info.max, "a number")
 
 

@@ -9,15 +9,16 @@ from __future__ import annotations
 import re
 
 OPTIONS = frozenset({
-    "angle_unit", "angles", "camera", "camera_height", "clip", "config", "fps", "frames",
-    "friction", "house", "length_unit", "masses", "names", "no_house", "overlay", "over", "radius",
-    "restitution", "samples", "stick", "tab", "units",
+    "aim_offset", "angle_unit", "angles", "camera", "camera_height", "clip", "config", "fps",
+    "frames", "friction", "house", "length_unit", "masses", "names", "no_house", "out", "overlay",
+    "over", "radius", "restitution", "samples", "speed", "spin", "stick", "tab", "throw_sd",
+    "units",
 })  # fmt: skip
 """Settings and arguments that are options of the command."""
 
 COMMANDS = ("check", "convert", "estimate", "run", "season", "simulate", "track")
 
-_OTHER = {"masses": "--mass", "overlay": "--no-overlay"}
+_OTHER = {"masses": "--mass", "out": "-o", "overlay": "--no-overlay"}
 _NAME = re.compile(rf"`({'|'.join((*sorted(OPTIONS, key=len, reverse=True), *COMMANDS))})`")
 
 

@@ -193,7 +193,9 @@ def _beside(path: Path, folder: Path, name: str) -> Path:
                 return there
         except (OSError, ValueError):  # a name that is none
             continue
-    raise InputError(f"{path}: its clip {bare[:80]} is not there; put it beside the project")
+    raise InputError(
+        f"{path}: its clip {bare[:80]} is missing; put it into the folder of the project"
+    )
 
 
 def _hidden(name: str) -> bool:
@@ -215,5 +217,5 @@ def _linked(path: Path, root: Thing) -> dict[str, _Tab]:
                     tabs.setdefault(there.stem, _Tab(root, there.parent))
                 break
     if not tabs:
-        raise InputError(f"{path}: a set of tabs whose projects are not beside it")
+        raise InputError(f"{path}: a set of tabs without its projects in the same folder")
     return tabs

@@ -46,8 +46,8 @@ def as_measured(tracks: pd.DataFrame, source: str) -> tuple[pd.DataFrame, list[s
     stones = off[shown & off.notna().all(axis=1)].groupby(tracks["stone"])
     if (stones.median()[stones.size() >= FEW].abs() > MOVED).any(axis=None):
         return filtered[shown], [
-            f"{source}: x and y are not where meas_x and meas_y are; taken as edited, and those"
-            " left out"
+            f"{source}: x and y differ from meas_x and meas_y; read as edited, and meas_x and"
+            " meas_y are left out"
         ]
     away = pd.Series(np.hypot(off["x"], off["y"]), off.index)
     alone = away.isna()
@@ -58,5 +58,5 @@ def as_measured(tracks: pd.DataFrame, source: str) -> tuple[pd.DataFrame, list[s
         measured.loc[own, name] = filtered.loc[own, name]
     kept = filtered.drop(columns=[*LENGTHS, *told.values()], errors="ignore").assign(**measured)
     count = int((shown & edited).sum())
-    notes = [f"{source}: {count} of its places are not where they were measured; taken as edited"]
+    notes = [f"{source}: {count} places differ from the measured ones; read as edited"]
     return kept[own | ~alone], notes if count else []

@@ -1,4 +1,4 @@
-"""What a run found out, as values: the content of ``results.json`` (see `data.results_file`)."""
+"""The results of a run, as values: the content of ``results.json`` (see `data.results_file`)."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from curlshot.data.estimates import Estimate as Estimate
 from curlshot.data.estimates import Friction as Friction
 from curlshot.data.estimates import Glide as Glide
+from curlshot.data.estimates import NotedEstimate as NotedEstimate
 from curlshot.data.sheet import STONE
 
 
 @dataclass(frozen=True)
-class Joint:
+class JointEstimate:
     """Values that were estimated together: their names, numbers and covariance."""
 
     names: tuple[str, ...]
@@ -21,32 +22,25 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Told(Estimate):
-    """An estimate with a ``note`` that says why there is none, or what it is worth."""
-
-    note: str | None = None
-
-
-@dataclass(frozen=True)
 class Method:
-    """Restitution and friction by one method, beside which others can be held.
+    """Restitution and friction by one method, for comparison with other methods.
 
-    ``hits`` holds the restitution of each hit, in the order of the collisions.
+    ``hits`` holds the restitution of each hit, in the order of the hits.
     """
 
     restitution: Estimate = field(default_factory=Estimate)
     friction: Estimate = field(default_factory=Estimate)
-    stone_friction: Told = field(default_factory=Told)
+    stone_friction: NotedEstimate = field(default_factory=NotedEstimate)
     hits: tuple[Estimate, ...] = ()
     note: str | None = None
 
 
 @dataclass(frozen=True)
 class Law:
-    """One choice of laws that the shot was fitted with.
+    """One candidate choice of laws that the shot was fitted with.
 
-    ``criterion`` is minus twice the log probability of the detections, less that of the best;
-    ``weight`` is the probability of these laws among those tried, and ``friction`` that of the
+    ``criterion`` is minus twice the log probability of the detections, less that of the best.
+    ``weight`` is the probability of these laws among the candidates. ``friction`` is that of the
     ice at 1 m/s under them.
     """
 
@@ -58,34 +52,35 @@ class Law:
 
 @dataclass(frozen=True)
 class StoneResult:
-    """What one stone tells by itself.
+    """Estimates from the track of one stone.
 
-    ``friction`` of the ice over its glides, ``turn`` of its path (rad/s, to the left positive)
-    and ``speed`` (m/s) at which, both means over its glides; ``spin`` (rad/s) as it is first
-    seen to move.
+    ``friction`` of the ice and ``turn_rate`` of the path (rad/s, left positive) are means over
+    the glides of the stone, at their mean ``speed`` (m/s). ``spin`` (rad/s) is that of its first
+    observed motion.
     """
 
     friction: Estimate = field(default_factory=Estimate)
-    turn: Estimate = field(default_factory=Estimate)
+    turn_rate: Estimate = field(default_factory=Estimate)
     speed: float | None = None
     spin: Estimate = field(default_factory=Estimate)
 
 
 @dataclass(frozen=True)
-class Misfit:
-    """How far a stone's track is from its path in the fit of the whole shot, between two hits.
+class TrackResidual:
+    """Residual of one segment of a track in the shot fit, between two hits.
 
-    ``size`` is the root mean square of what is off smoothly, from ``t0`` to ``t1`` (s), over what
-    errors make of that: 1, or less, where the stone moves as stones do on ice. ``certain`` tells
-    that it is larger than by chance, ``left_out`` that the fit hardly heeds the stretch for it.
+    ``rms_ratio`` is the root mean square of the smooth part of the residual from ``t0`` to ``t1``
+    (s), over the value expected from the errors. It is 1 or less where ice and hits explain the
+    motion. ``significant``: chance does not explain it. ``downweighted``: the fit gives the segment
+    little weight because of it.
     """
 
     stone: str
     t0: float
     t1: float
-    size: float
-    certain: bool
-    left_out: bool
+    rms_ratio: float
+    significant: bool
+    downweighted: bool
 
 
 @dataclass(frozen=True)
@@ -123,14 +118,21 @@ class MeasuredState(StoneState):
 
 
 @dataclass(frozen=True)
-class Collision:
-    """One hit of two stones.
+class Hit:
+    """One measured hit of two stones.
 
-    ``normal`` is the unit vector from the first stone to the second at contact,
-    ``restitution`` may be None where the hit cannot tell (``note`` says why), and so may
-    ``stone_friction`` (``note_stone_friction``),
-    ``momentum_residual`` is |Σv' − Σv| / |Σv| (masses as given) and ``energy_lost`` the
-    fraction of the translational kinetic energy that is gone.
+    ``normal`` is the unit vector from the first stone to the second at contact.
+    ``restitution`` is None where it is not identifiable (``note`` says why), and so is
+    ``stone_friction`` (``note_stone_friction``).
+    ``momentum_residual`` is |Σv' − Σv| / |Σv| (masses as given). ``energy_lost`` is the
+    fraction of the translational kinetic energy that is lost.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> hit = curlshot.Hit(1.2, 0.01, ("A", "B"), (0.0, -1.0), 0.83, 0.02, {}, {})
+    >>> print(hit.e)
+    0.830 ± 0.020
     """
 
     t: float
@@ -150,14 +152,19 @@ class Collision:
     note_stone_friction: str | None = None
 
     @property
+    def e(self) -> NotedEstimate:
+        """The coefficient of restitution, or why it is unknown."""
+        return NotedEstimate(self.restitution, self.stderr, self.note)
+
+    @property
     def earliest(self) -> float:
-        """Time before which the stones have not met for certain, s: three standard errors."""
+        """Time before which the stones surely did not touch, s: three standard errors."""
         return self.t - 3 * (self.stderr_t or 0.0)
 
 
 @dataclass(frozen=True)
 class SimulatedHit:
-    """One hit of a simulated shot, its states with the errors that the shot's start gives them."""
+    """One hit of a simulated shot; the errors of its states follow from those of the start."""
 
     t: float
     stderr_t: float | None
@@ -168,12 +175,12 @@ class SimulatedHit:
 
 @dataclass(frozen=True)
 class SimulationScore:
-    """How far a simulated shot was from the measured one.
+    """Errors of a simulated shot against the measured one.
 
-    ``rmse`` over all stones and times after the first hit, m; ``rest_error`` per stone the
-    distance between simulated and measured last place, m; ``hits`` in their order; ``rest_sd``
-    per stone the standard deviation (m, both axes together) of its simulated last place, from the
-    errors of the start and of the laws.
+    ``rmse`` is taken over all stones and times after the first hit, m. ``rest_error`` is by stone
+    the distance between simulated and measured last place, m. ``rest_sd`` is by stone the
+    standard deviation (m, both axes together) of its simulated last place, from the errors of the
+    start and of the laws. ``hits`` are in order of time.
     """
 
     rmse: float | None
@@ -185,15 +192,15 @@ class SimulationScore:
 
 @dataclass(frozen=True)
 class Prediction:
-    """How far a shot predicted from before its first hit was from the measured one.
+    """Errors of a shot predicted from before its first hit against the measured one.
 
-    ``rmse`` and ``rest_error`` as in `SimulationScore`; ``rest_sd`` per stone how far from its
-    predicted last place it may end (r.m.s., m, both axes together), by what is not known of the
-    states before the hit, of the ice and of hits. ``restitution`` and ``friction`` are what was
-    assumed beforehand: of e nothing else is known, of μ also what was seen until the hit.
-    ``error_after`` per stone the distance between its predicted and measured place (m) 1.16 s
-    after the first hit, where the study of the 2018 Olympic final states its own, 5.6 cm, and
-    ``sd_after`` as `rest_sd`, of the place then.
+    ``rmse`` and ``rest_error`` are as in `SimulationScore`. ``rest_sd`` is by stone the prediction
+    uncertainty of its last place (r.m.s., m, both axes together): from the states before the hit,
+    the ice and the hits. ``restitution`` is the value assumed beforehand. ``friction`` combines the
+    assumed value with the motion before the hit.
+    ``error_at_comparison`` is by stone the distance between predicted and measured place (m)
+    1.16 s after the first hit: the comparison time of the study of the 2018 Olympic final, whose
+    error is 5.6 cm. ``sd_at_comparison`` is the prediction uncertainty at that time.
     """
 
     rmse: float | None
@@ -202,8 +209,8 @@ class Prediction:
     restitution: Estimate = field(default_factory=Estimate)
     friction: Estimate = field(default_factory=Estimate)
     note: str | None = None
-    error_after: Mapping[str, float | None] = field(default_factory=dict)
-    sd_after: Mapping[str, float | None] = field(default_factory=dict)
+    error_at_comparison: Mapping[str, float | None] = field(default_factory=dict)
+    sd_at_comparison: Mapping[str, float | None] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -218,29 +225,29 @@ class Input:
 
 @dataclass(frozen=True)
 class Results:
-    """All that a run found out.
+    """All results of a run.
 
-    ``masses`` has those given, in any unit, of all stones or none.
-    ``teams`` has each stone's as in ``tracks.csv``, without those of which nothing is known.
-    ``sheet`` says whether places count from the tee of a sheet, along y.
+    ``masses`` holds the given ones, in any unit, of all stones or none.
+    ``teams`` holds the known teams of the stones, as in ``tracks.csv``.
+    ``origin_at_tee`` says whether the origin is the tee of a sheet that lies along y.
     """
 
     input: Input
     restitution: Estimate
     friction: Friction
-    collisions: tuple[Collision, ...] = ()
+    collisions: tuple[Hit, ...] = ()
     glides: tuple[Glide, ...] = ()
     simulations: Mapping[str, SimulationScore] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     radius: float = STONE.radius
     predictions: Mapping[str, Prediction] = field(default_factory=dict)
-    laws: Joint | None = None
+    joint_estimate: JointEstimate | None = None
     methods: Mapping[str, Method] = field(default_factory=dict)
-    law_choice: tuple[Law, ...] = ()
-    curl: Told = field(default_factory=Told)
+    model_selection: tuple[Law, ...] = ()
+    curl: NotedEstimate = field(default_factory=NotedEstimate)
     stones: Mapping[str, StoneResult] = field(default_factory=dict)
-    misfits: tuple[Misfit, ...] = ()
+    residuals: tuple[TrackResidual, ...] = ()
     posterior: Posterior | None = None
     masses: Mapping[str, float] = field(default_factory=dict)
     teams: Mapping[str, str] = field(default_factory=dict)
-    sheet: bool = True
+    origin_at_tee: bool = True

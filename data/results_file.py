@@ -1,4 +1,4 @@
-"""``results.json``: what a run found out, written as strict JSON and read again."""
+"""``results.json``: the results of a run, written as strict JSON and read again."""
 
 from __future__ import annotations
 
@@ -13,27 +13,44 @@ from curlshot.data.errors import InputError
 from curlshot.data.files import write_text
 from curlshot.data.messages import as_options
 from curlshot.data.results import (
-    Collision,
     Estimate,
     Friction,
     Glide,
+    Hit,
     Input,
-    Joint,
+    JointEstimate,
     Law,
     MeasuredState,
     Method,
-    Misfit,
+    NotedEstimate,
     Posterior,
     Prediction,
     Results,
     SimulatedHit,
     SimulationScore,
     StoneResult,
-    Told,
+    TrackResidual,
 )
 
-SCHEMA = 1
+SCHEMA = 2
 """Version of the file's form."""
+
+RENAMED_TOP = {
+    "laws": "joint_estimate",
+    "law_choice": "model_selection",
+    "misfits": "residuals",
+    "sheet": "origin_at_tee",
+}
+"""Keys of version 1 at the top of the file, and their names since version 2."""
+
+RENAMED_IN = {
+    "methods": {"global": "shot_fit"},
+    "glides": {"turn": "turn_rate", "stderr_turn": "stderr_turn_rate"},
+    "stones": {"turn": "turn_rate"},
+    "predictions": {"error_after": "error_at_comparison", "sd_after": "sd_at_comparison"},
+    "residuals": {"size": "rms_ratio", "certain": "significant", "left_out": "downweighted"},
+}
+"""By key of the top, in its new name: keys of version 1 in its items, and their new names."""
 
 _Made = TypeVar("_Made")
 
@@ -50,17 +67,20 @@ def write_results(results: Results, path: Path) -> None:
 
 
 def read_results(path: Path) -> Results:
-    """Read a ``results.json``.
+    """Read a ``results.json``, of version 1 too.
 
     Raises
     ------
     InputError
-        Where the file is missing or no such thing.
+        Where the file is missing or not a ``results.json``.
     """
     try:
         raw = json.loads(path.read_text(encoding="utf-8"))
-        if raw.pop("schema") != SCHEMA:
+        schema = raw.pop("schema")
+        if schema not in (1, SCHEMA):
             raise InputError(f"{path}: results of another version; run again")
+        if schema == 1:
+            raw = _from_version_1(raw)
         return Results(
             input=_made(Input, {**raw["input"], "files": tuple(raw["input"]["files"])}),
             restitution=_made(Estimate, raw["restitution"]),
@@ -73,21 +93,22 @@ def read_results(path: Path) -> Results:
             predictions={
                 name: _prediction(item) for name, item in raw.get("predictions", {}).items()
             },
-            laws=_joint(raw.get("laws")),
+            joint_estimate=_joint(raw.get("joint_estimate")),
             methods={name: _method(item) for name, item in raw.get("methods", {}).items()},
-            law_choice=tuple(
-                _made(Law, _with_estimates(item, "friction")) for item in raw.get("law_choice", ())
+            model_selection=tuple(
+                _made(Law, _with_estimates(item, "friction"))
+                for item in raw.get("model_selection", ())
             ),
-            curl=_made(Told, raw.get("curl", {})),
+            curl=_made(NotedEstimate, raw.get("curl", {})),
             stones={
-                name: _made(StoneResult, _with_estimates(item, "friction", "turn", "spin"))
+                name: _made(StoneResult, _with_estimates(item, "friction", "turn_rate", "spin"))
                 for name, item in raw.get("stones", {}).items()
             },
-            misfits=tuple(_made(Misfit, item) for item in raw.get("misfits", ())),
+            residuals=tuple(_made(TrackResidual, item) for item in raw.get("residuals", ())),
             posterior=(_made(Posterior, raw["posterior"]) if raw.get("posterior") else None),
             masses={str(name): _length(mass) for name, mass in raw.get("masses", {}).items()},
             teams={str(name): str(team) for name, team in raw.get("teams", {}).items()},
-            sheet=bool(raw.get("sheet", True)),
+            origin_at_tee=bool(raw.get("origin_at_tee", True)),
         )
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
@@ -95,9 +116,26 @@ def read_results(path: Path) -> Results:
         raise InputError(f"{path}: not a results.json of this program") from None
 
 
-def _collision(item: dict[str, Any]) -> Collision:
+def _from_version_1(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the content of a file of version 1 with the names of version 2."""
+    new = {RENAMED_TOP.get(key, key): value for key, value in raw.items()}
+    new["methods"] = _renamed(new.get("methods", {}), RENAMED_IN["methods"])
+    for key in ("glides", "residuals"):
+        new[key] = [_renamed(item, RENAMED_IN[key]) for item in new.get(key, ())]
+    for key in ("stones", "predictions"):
+        items = new.get(key, {}).items()
+        new[key] = {name: _renamed(item, RENAMED_IN[key]) for name, item in items}
+    return new
+
+
+def _renamed(item: Mapping[str, Any], names: Mapping[str, str]) -> dict[str, Any]:
+    """Return a mapping with new names of some keys."""
+    return {names.get(key, key): value for key, value in item.items()}
+
+
+def _collision(item: dict[str, Any]) -> Hit:
     nx, ny = item["normal"]
-    return _made(Collision, {**item, **_sides(item), "normal": (nx, ny)})
+    return _made(Hit, {**item, **_sides(item), "normal": (nx, ny)})
 
 
 def _simulated(item: dict[str, Any]) -> SimulationScore:
@@ -128,7 +166,7 @@ def _made(kind: type[_Made], item: Mapping[str, Any]) -> _Made:
 
 def _length(value: Any) -> float:
     if type(value) not in (int, float) or not 0 < value < math.inf:
-        raise TypeError("no length nor mass")
+        raise TypeError("not a length or mass")
     return float(value)
 
 
@@ -138,9 +176,9 @@ def _prediction(item: dict[str, Any]) -> Prediction:
 
 def _method(item: dict[str, Any]) -> Method:
     hits = tuple(_made(Estimate, hit) for hit in item["hits"])
-    told = _made(Told, item["stone_friction"])
+    sliding = _made(NotedEstimate, item["stone_friction"])
     own = _with_estimates(item, "restitution", "friction")
-    return _made(Method, {**own, "stone_friction": told, "hits": hits})
+    return _made(Method, {**own, "stone_friction": sliding, "hits": hits})
 
 
 def _with_estimates(item: dict[str, Any], *names: str) -> dict[str, Any]:
@@ -148,13 +186,13 @@ def _with_estimates(item: dict[str, Any], *names: str) -> dict[str, Any]:
     return {**item, **{name: _made(Estimate, item[name]) for name in names}}
 
 
-def _joint(item: dict[str, Any] | None) -> Joint | None:
+def _joint(item: dict[str, Any] | None) -> JointEstimate | None:
     if item is None:
         return None
     names, cov = tuple(item["names"]), tuple(tuple(map(float, row)) for row in item["cov"])
     if {len(names)} != {len(item["values"]), len(cov), *map(len, cov)}:
         raise ValueError("names, values and covariance do not fit")
-    return Joint(names, tuple(map(float, item["values"])), cov)
+    return JointEstimate(names, tuple(map(float, item["values"])), cov)
 
 
 def _plain(value: Any) -> Any:

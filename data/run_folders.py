@@ -80,7 +80,7 @@ def read_runs(files: Mapping[str, Path]) -> dict[str, Results]:
     for name in others:
         if runs[name].radius != runs[first].radius:
             raise InputError(
-                f"{name}: of discs of radius {runs[name].radius:g} m, but those of {first} have"
-                f" {runs[first].radius:g} m; name runs of one kind of disc"
+                f"{name}: its discs have a radius of {runs[name].radius:g} m, those of {first}"
+                f" {runs[first].radius:g} m; name runs with the same discs"
             )
     return runs

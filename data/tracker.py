@@ -153,7 +153,7 @@ def read_table(
         file.tracks, notes = as_measured(file.tracks, str(path))
         warnings += notes
         if file.tracks.empty:
-            raise InputError(f"{path}: no row in which a stone was seen")
+            raise InputError(f"{path}: no row with a place")
     source = ", ".join(str(path) for path in paths)
     refuse_shared_names(paths, files)
     table = pd.concat([file.tracks for file in files], ignore_index=True)
@@ -190,8 +190,8 @@ def _set_masses(
     untouched = sorted(stone for stone, mass in known.items() if mass == 1)
     if untouched:
         return {}, [
-            f"{source}: the mass of {', '.join(untouched)} is Tracker's default, 1; all masses are"
-            " taken as equal (`masses` to say otherwise)"
+            f"{source}: the mass of {', '.join(untouched)} is Tracker's default, 1; all masses"
+            " are assumed equal (`masses` overrides this)"
         ]
     return known, []
 
@@ -204,7 +204,7 @@ def _refuse_partly(paths: Sequence[Path], files: Sequence[TrackFile]) -> None:
     silent = next((path for path, unit in told.items() if not unit), None)
     if said is not None and silent is not None:
         raise InputError(
-            f"{silent}: tells no length unit, but {said} is in {told[said]}; write it in the header"
+            f"{silent}: has no length unit, but {said} is in {told[said]}; write it in the header"
         )
 
 
@@ -229,8 +229,8 @@ def _to_si(
             chosen = "deg" if _spins_too_fast(tracks, file.continuous) else "rad"
             if chosen == "deg":
                 warnings.append(
-                    f"{path}: angles taken in degrees, they change too fast for radians"
-                    " (`angle_unit` to say otherwise)"
+                    f"{path}: angles read in degrees, since they change too fast for radians"
+                    " (`angle_unit` overrides this)"
                 )
         for name in ANGLES:
             if name in tracks:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from curlshot.data.column_units import with_units
 from curlshot.data.errors import InputError
 from curlshot.data.files import whole_file
 from curlshot.data.text import printable
@@ -259,17 +260,76 @@ def write_tracks(tracks: Table, path: Path, detections: Table | None = None) -> 
     """
     table = {name: tracks[name] for name in TRACK_COLUMNS}
     if detections is not None:
-        rank = {
-            key: k for k, key in enumerate(zip(detections["stone"], detections["t"], strict=True))
-        }
-        rows = [rank.get(key, -1) for key in zip(tracks["stone"], tracks["t"], strict=True)]
-        for written, name in MEASURED_AS.items():
-            table[written] = np.append(np.asarray(detections[name], float), np.nan)[rows]
+        table |= measured_columns(tracks, detections)
     write_table(table, path)
 
 
+def measured_columns(tracks: Table, detections: Table) -> Columns:
+    """Return the columns of `MEASURED_AS` for the rows of `tracks`; NaN where nothing was seen."""
+    rank = {key: k for k, key in enumerate(zip(detections["stone"], detections["t"], strict=True))}
+    rows = [rank.get(key, -1) for key in zip(tracks["stone"], tracks["t"], strict=True)]
+    return {
+        written: np.append(np.asarray(detections[name], float), np.nan)[rows]
+        for written, name in MEASURED_AS.items()
+    }
+
+
+def with_measured(tracks: pd.DataFrame, detections: Table) -> pd.DataFrame:
+    """Return tracks as ``tracks.csv`` has them: with what was measured, and units in ``attrs``."""
+    return with_units(tracks.assign(**measured_columns(tracks, detections)))
+
+
+def measured_rows(tracks: pd.DataFrame) -> pd.DataFrame:
+    """Return the detections that `tracks` were made of, by their columns of `MEASURED_AS`.
+
+    Raises
+    ------
+    InputError
+        Where the tracks do not have them.
+    """
+    if "meas_x" not in tracks:
+        raise InputError("tracks: no column meas_x; what was measured is not known")
+    seen = tracks[tracks["meas_x"].notna() & tracks["meas_y"].notna()]
+    own = seen[["stone", "frame", "t", "team"]]
+    measured = {name: seen.get(written, np.nan) for written, name in MEASURED_AS.items()}
+    return own.assign(**measured)[list(DETECTION_COLUMNS)].reset_index(drop=True)
+
+
 def read_tracks(path: Path) -> pd.DataFrame:
-    """Read a ``tracks.csv`` as `write_tracks` wrote it.
+    """Read a ``tracks.csv`` as `write_tracks` wrote it, for a shot to throw again.
+
+    Raises
+    ------
+    InputError
+        Where the file is missing or no such thing, or has no motion.
+    """
+    table = load_tracks(path)[list(TRACK_COLUMNS)]
+    if table.empty:
+        raise InputError(f"{path}: a table without any row")
+    if table[["vx", "vy"]].isna().all(axis=None):
+        raise InputError(
+            f"{path}: places without velocities, as from one frame: no shot to reconstruct"
+        )
+    states = table[["t", "x", "y", "vx", "vy"]].to_numpy()
+    if not (np.abs(states) < FARTHEST).all():  # NaN is refused too
+        raise InputError(f"{path}: times, places or velocities are not numbers")
+    return table
+
+
+def load_tracks(path: Path, model: bool = False) -> pd.DataFrame:
+    """Read a table of tracks that a run wrote, or version 0.1 of the program.
+
+    Parameters
+    ----------
+    path : Path
+        ``tracks.csv``; ``simulation.csv`` with `model`.
+    model : bool
+        Whether a column ``model`` comes first.
+
+    Returns
+    -------
+    DataFrame
+        `TRACK_COLUMNS`, and of ``tracks.csv`` what there is of `MEASURED_AS`.
 
     Raises
     ------
@@ -278,23 +338,17 @@ def read_tracks(path: Path) -> pd.DataFrame:
     """
     import pandas as pd
 
-    texts = {"stone": str, "team": str}
+    texts = {"stone": str, "team": str, "model": str}
     numbers = {name: float for name in TRACK_COLUMNS if name not in (*texts, "frame", "seen")}
+    columns = ["model", *TRACK_COLUMNS] if model else [*TRACK_COLUMNS]
     try:
-        table = pd.read_csv(path, dtype={**texts, **numbers})
-        table = table.assign(team=table.get("team", "")).fillna({"team": ""})[list(TRACK_COLUMNS)]
+        table = pd.read_csv(path, dtype={**texts, **numbers}).rename(columns=EARLIER_NAMES)
+        table = table.assign(team=table.get("team", "")).fillna({"team": ""})
+        return table[[*columns, *(name for name in MEASURED_AS if name in table)]]
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
     except (ValueError, KeyError):  # pandas' own mistakes are ValueErrors
-        raise InputError(f"{path}: not a tracks.csv of this program") from None
-    if table.empty:
-        raise InputError(f"{path}: a table without any row")
-    if table[["vx", "vy"]].isna().all(axis=None):
-        raise InputError(f"{path}: places without velocities, as of one picture: no shot is known")
-    states = table[["t", "x", "y", "vx", "vy"]].to_numpy()
-    if not (np.abs(states) < FARTHEST).all():  # NaN is refused too
-        raise InputError(f"{path}: times, places or velocities that are none")
-    return table
+        raise InputError(f"{path}: not a {path.name} of this program") from None
 
 
 def simulation_table(

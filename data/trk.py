@@ -194,7 +194,7 @@ class Project:
             Where no track has a mark in the clip, two have one name, or there is no scale.
         """
         if not self.masses:
-            clip = "; what its clip shows can be measured (`clip`)" if self.video else ""
+            clip = "; its clip can be measured (`clip`)" if self.video else ""
             raise InputError(
                 f"{self.source}: no point mass with marks (it has"
                 f" {', '.join(self.others)[:80] or 'no tracks'}); mark stones as point masses in"
@@ -209,8 +209,9 @@ class Project:
         warnings = list(self.warnings)
         if self.filters:
             warnings.append(
-                f"{self.source}: marked on a video changed by filters ({', '.join(self.filters)});"
-                " places are as Tracker shows them, the picture itself is not changed here"
+                f"{self.source}: marked on a video changed by filters"
+                f" ({', '.join(self.filters)}); places are as Tracker shows them, the frames are"
+                " not changed here"
             )
         parts = []
         for track in self.masses:
@@ -220,8 +221,8 @@ class Project:
                 continue
             if track.filled:
                 warnings.append(
-                    f"{self.source}: {track.filled} places of {track.name} were filled in by"
-                    " Tracker between marks; they are used as if they were measured"
+                    f"{self.source}: Tracker filled in {track.filled} places of {track.name}"
+                    " between marks; they are used as if measured"
                 )
             parts.append(part)
         if not parts:

@@ -62,7 +62,7 @@ def _project(root: Thing, source: str) -> Project:
         coordinates = _relative_to(giver, coordinates)
         masses = tuple(track for track in masses if track is not giver)
         warnings.append(
-            f"places are relative to {reference}, the project's reference frame; {reference} itself"
+            f"places are relative to {reference}, the reference frame of the project; {reference}"
             " rests in it and is left out"
         )
     moving = [_MOVES_PIXELS[name] for name in _filters(video) if name in _MOVES_PIXELS]
@@ -225,8 +225,8 @@ def _clock(stamps: Array, duration: float) -> tuple[Array, list[str]]:
     if off < _UNEVEN * duration:
         return np.empty(0), []
     return clock, [
-        f"the frames of its video are uneven; their own times are used, up to {1000 * off:.0f} ms"
-        " from those that Tracker exports"
+        "the frames of its video are unevenly spaced; their own times are used, up to"
+        f" {1000 * off:.0f} ms from those that Tracker exports"
     ]
 
 

@@ -131,7 +131,7 @@ def read_wide(table: TextTable, names: Sequence[str], fps: float | None) -> Trac
     pairs = pairs_of(table.names or names)
     unread = [stem for stem, (x, _) in pairs.items() if x not in columns]
     if unread:
-        warnings.append(f"{table.path}: x and y of {', '.join(unread)} beside x and y; left out")
+        warnings.append(f"{table.path}: x and y of {', '.join(unread)} next to x and y; left out")
     used = columns.union(*pairs.values())
     lone = [name for k, name in enumerate(names) if k not in used and is_place(name)]
     if lone:

@@ -25,12 +25,14 @@ name, why = shot_stone(rest)
 print(f"shot stone: {name or 'not known'} ({why})")
 for stone in rest.to_dict("records"):
     known = stone["to_tee"] >= 0  # NaN where the clip cannot tell; the note says why
-    place = f"{FEET.length(stone['to_tee'])} from the tee" if known else FEET.told(stone["note"])
+    place = (
+        f"{FEET.length(stone['to_tee'])} from the tee" if known else FEET.converted(stone["note"])
+    )
     print(f"  {stone['stone']}: {place}")
 
 for row in speed_table(tracks, hits).to_dict("records"):
     speed, sd = row["speed"] * FEET.per_metre, row["sd"] * FEET.per_metre
-    said = f"{speed:.3f} ± {sd:.3f} ft/s" if speed >= 0 else FEET.told(row["note"])
+    said = f"{speed:.3f} ± {sd:.3f} ft/s" if speed >= 0 else FEET.converted(row["note"])
     print(f"  {row['stone']}, {row['at']}: {said}")
 
 for row in takeout_table(hits).to_dict("records"):

@@ -16,7 +16,7 @@ import pandas as pd
 from curlshot.data.sheet import STONE
 from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, StoneStart
 
@@ -33,7 +33,7 @@ RADIUS = STONE.radius  # of the discs, m
 
 table = pd.read_csv(Path(sys.argv[1]) / "tracks.csv") if sys.argv[1:] else made_up()
 detections = check_detections(table)
-hits = find_contacts(detections, RADIUS)
+hits = detect_hits(detections, RADIUS)
 found = estimate(detections, hits, radius=RADIUS)
 
 print("hits:", [(f"{hit.t:.3f} s", hit.stones) for hit in hits])

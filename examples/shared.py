@@ -18,10 +18,10 @@ from curlshot.data.sheet import STONE
 from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import estimate
 from curlshot.physics.impact.frictional import Frictional
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
+from curlshot.physics.shot_fit.global_fit import fit_shots
 from curlshot.physics.simulator.simulate import simulate
 from curlshot.physics.simulator.simulation import Shot, StoneStart
-from curlshot.physics.whole_shot.global_fit import fit_shots
 
 RADIUS = STONE.radius  # of the discs, m
 
@@ -38,11 +38,11 @@ def made_up(speed: float, aside: float) -> pd.DataFrame:
 runs = [pipeline.measure(Path(run) / "tracks.csv").detections for run in sys.argv[1:]]
 fits = []
 for detections in runs or [made_up(1.5, 0.05), made_up(2.0, -0.08)]:
-    found = estimate(detections, find_contacts(detections, RADIUS), radius=RADIUS)
-    if found.whole is None:
-        sys.exit(f"a shot that cannot be fitted as a whole: {found.by_whole.note}")
-    fits.append(found.whole)
-    print("by itself: e =", found.whole["restitution"], " μ =", found.whole["friction"])
+    found = estimate(detections, detect_hits(detections, RADIUS), radius=RADIUS)
+    if found.shot_fit is None:
+        sys.exit(f"no shot fit: {found.by_shot_fit.note}")
+    fits.append(found.shot_fit)
+    print("by itself: e =", found.shot_fit["restitution"], " μ =", found.shot_fit["friction"])
 
 held = {name: value for fit in fits for name, value in fit.fixed.items()}
 shots = [shot for fit in fits for shot in fit.shots]

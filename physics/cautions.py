@@ -23,8 +23,8 @@ SLIPPERIEST = 2e-4
 """Friction below that of anything that glides: a twentieth of that of the keenest ice."""
 
 NO_SHEET = (
-    "the shot does not come along y within the sides of a sheet whose tee is the origin: no house"
-    " and no lines; put the origin on the tee and y along the sheet if there is one"
+    "the shot does not run along y within the sidelines of a sheet with its origin at the tee;"
+    " house and lines are not drawn; if there is a sheet, put the origin on the tee and y along it"
 )
 
 LISTED = 4
@@ -66,8 +66,8 @@ def _few(frames: int) -> tuple[str, ...]:
     if not 1 < frames < FEWEST:
         return ()
     return (
-        f"stones are seen in {frames} frames: too few to tell which of them move, what hits them"
-        f" and where they stop; it takes {FEWEST}",
+        f"stones are measured in {frames} frames: too few to identify which ones move, what hits"
+        f" them and where they stop; at least {FEWEST} are needed",
     )
 
 
@@ -76,7 +76,7 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
 
     A clip that runs k times too slowly shows μ / k², tracks k times too long k μ.
     """
-    from curlshot.physics.whole_shot.priors import FRICTION
+    from curlshot.physics.shot_fit.priors import FRICTION
 
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None or value <= 0:
@@ -87,9 +87,9 @@ def _pace(friction: Estimate) -> tuple[str, ...]:
     if times < 1:
         times, pace = 1 / times, "fast"
     return (
-        f"friction: {value:.2g} is not that of curling ice; a clip in {pace} motion"
-        f" (about {times:.2g} times) or tracks in another length unit would look so: then speeds"
-        " are not real ones, e is",
+        f"friction: {value:.2g} is not that of curling ice; a clip in {pace} motion (about"
+        f" {times:.2g} times) or tracks in another length unit would explain it; then speeds are"
+        " wrong, e is not",
     )
 
 
@@ -99,9 +99,8 @@ def _pace_anywhere(friction: Estimate) -> tuple[str, ...]:
     if value is None or stderr is None or value <= 0 or value + 2 * stderr > SLIPPERIEST:
         return ()
     return (
-        f"friction: {value:.2g} is below that of any surface; a wrong number of"
-        " frames a second (`fps`), slow motion or another length unit would look so: then speeds"
-        " are not real ones, e is",
+        f"friction: {value:.2g} is below that of any surface; a wrong frame rate (`fps`), slow"
+        " motion or another length unit would explain it; then speeds are wrong, e is not",
     )
 
 
@@ -111,8 +110,8 @@ def _throws(later: Mapping[str, float]) -> tuple[str, ...]:
         return ()
     each = ", ".join(f"{name} at {when:.2f} s" for name, when in later.items())
     return (
-        f"more than one throw: {each}, when all others have stopped; e and μ are of all,"
-        " predictions of the first hit; to measure one alone cut the table, or name its frames"
+        f"more than one throw: {each}, after all others stopped; e and μ are of all throws,"
+        " predictions of the first hit; to measure one throw, cut the table or choose its frames"
         " (`frames`)",
     )
 
@@ -133,7 +132,7 @@ def _left_out(detections: pd.DataFrame, tracks: pd.DataFrame) -> tuple[str, ...]
         f"{stone} at {t:.2f} s ({_little(off)} off)" for stone, t, off in zip(*columns, strict=True)
     )
     more = f" and {len(both) - len(worst)} more" if len(both) > len(worst) else ""
-    return (f"marks that are off the ways of their stones are left out: {each}{more}",)
+    return (f"marks far from the trajectories of their stones are left out: {each}{more}",)
 
 
 def _little(length: float) -> str:

@@ -1,7 +1,7 @@
 """Restitution and friction from tracks, each with a standard error.
 
 Twice: from the paths beside the hits (`curlshot.physics.local_fit.local`), and from one fit of the
-whole shot through the simulator (`curlshot.physics.whole_shot.global_fit`), which is the sharper
+whole shot through the simulator (`curlshot.physics.shot_fit.global_fit`), which is the sharper
 where the simulator can follow the shot. The first is what the second is checked against.
 """
 
@@ -16,28 +16,28 @@ import pandas as pd
 
 from curlshot.data.errors import InputError
 from curlshot.data.results import (
-    Collision,
     Estimate,
     Friction,
     Glide,
-    Joint,
+    Hit,
+    JointEstimate,
     Method,
-    Misfit,
+    NotedEstimate,
     StoneResult,
-    Told,
+    TrackResidual,
 )
-from curlshot.physics.local_fit.contacts import Contact
 from curlshot.physics.local_fit.finite_differences import by_finite_differences
+from curlshot.physics.local_fit.hit_detection import HitCandidate
 from curlshot.physics.local_fit.local import Local, estimate_from_traces, estimate_locally
+from curlshot.physics.shot_fit.observed import observe
+from curlshot.physics.shot_fit.off_centre import centred_traces
+from curlshot.physics.shot_fit.priors import loose_priors
+from curlshot.physics.shot_fit.result import ShotFit
+from curlshot.physics.shot_fit.shot_model import ice
+from curlshot.physics.shot_fit.track_residuals import track_residuals
+from curlshot.physics.shot_fit.valid_interval import fit_valid_interval, followed
 from curlshot.physics.statistics.by_stone import results_by_stone
 from curlshot.physics.statistics.random_effects import random_effects
-from curlshot.physics.whole_shot.followed import fit_followed, followed
-from curlshot.physics.whole_shot.misfit import misfits
-from curlshot.physics.whole_shot.off_centre import centred_traces
-from curlshot.physics.whole_shot.priors import loose_priors
-from curlshot.physics.whole_shot.shot_model import ice
-from curlshot.physics.whole_shot.watched import watch
-from curlshot.physics.whole_shot.whole_fit import GlobalFit
 
 POOR_FIT = 30.0
 """Mean square of residuals against errors from which a simulated shot is not the one seen."""
@@ -52,18 +52,16 @@ good fits, on swept and uneven ice too, they differ by up to 2.7."""
 NEAR = 2.2
 """Distance of two stones' centres, in radii, from which they may have hit each other unseen."""
 
-INSTEAD = "values of each hit and glide used"
+INSTEAD = "local estimates of each hit and glide are used"
 """What is done where the whole shot is not used."""
 
 LED_ASTRAY = (
-    f"whole shot: something else than ice and hits moves a stone by its first hit; {INSTEAD}"
+    f"shot fit: something other than ice and hits moves a stone before its first hit; {INSTEAD}"
 )
 """Why a shot with hits is not fitted as a whole."""
 
-ALONE = "it counts all the same: something else moves the stone, or the track is bent"
-TOO_FEW = (
-    "it counts all the same, for too few stones move to tell whether this track is bent or another"
-)
+ALONE = "it keeps its weight: something else moves the stone, or its track is distorted"
+TOO_FEW = "it keeps its weight: too few stones move to identify which track is distorted"
 """What is said of a bent track of a stone by itself, and of one that may be the others' fault."""
 
 LAWS = ("restitution", "friction", "stone_friction")
@@ -80,7 +78,7 @@ class Estimates:
         Pooled over all hits.
     friction : Friction
         Pooled over all glides.
-    collisions : tuple of Collision
+    collisions : tuple of Hit
         In order of time.
     glides : tuple of Glide
         In order of stone and time.
@@ -89,26 +87,26 @@ class Estimates:
     local : Local
         What the paths beside the hits say, with what the whole shot, where it is used, has caps
         beside their centres by taken out.
-    whole : GlobalFit or None
+    shot_fit : ShotFit or None
         The whole shot fitted through the simulator, where its stones move as it knows it.
-    by_whole : Method
+    by_shot_fit : Method
         What that fit says, even where it is not used, and then why.
-    curl : Told
+    curl : NotedEstimate
         Turn of the paths at 1 m/s for a stone that spins counter-clockwise, rad/s.
-    misfits : tuple of Misfit
+    residuals : tuple of TrackResidual
         How far each track is from its path in a fit that follows the shot, between its hits.
     """
 
     restitution: Estimate = field(default_factory=Estimate)
     friction: Friction = field(default_factory=Friction)
-    collisions: tuple[Collision, ...] = ()
+    collisions: tuple[Hit, ...] = ()
     glides: tuple[Glide, ...] = ()
     warnings: tuple[str, ...] = ()
     local: Local = field(default_factory=Local, compare=False)
-    whole: GlobalFit | None = field(default=None, compare=False)
-    by_whole: Method = field(default_factory=Method)
-    curl: Told = field(default_factory=Told)
-    misfits: tuple[Misfit, ...] = ()
+    shot_fit: ShotFit | None = field(default=None, compare=False)
+    by_shot_fit: Method = field(default_factory=Method)
+    curl: NotedEstimate = field(default_factory=NotedEstimate)
+    residuals: tuple[TrackResidual, ...] = ()
 
     @property
     def methods(self) -> dict[str, Method]:
@@ -117,12 +115,12 @@ class Estimates:
         alone = Method(
             local.restitution,
             Estimate(local.friction.value, local.friction.stderr),
-            Told(note="friction between the stones: each hit tells its own"),
+            NotedEstimate(note="friction between the stones is estimated for each hit"),
             hits=tuple(Estimate(hit.restitution, hit.stderr) for hit in local.collisions),
-            note="from the paths beside the hits",
+            note="from the paths just before and after each hit",
         )
         plain = by_finite_differences(local.known, local.collisions, _rests(local))
-        return {"local": alone, "global": self.by_whole, "finite-differences": plain}
+        return {"local": alone, "shot_fit": self.by_shot_fit, "finite-differences": plain}
 
     @property
     def by_stone(self) -> dict[str, StoneResult]:
@@ -130,18 +128,22 @@ class Estimates:
         return results_by_stone(self.glides, self.collisions)
 
     @property
-    def laws(self) -> Joint | None:
+    def joint_estimate(self) -> JointEstimate | None:
         """What the whole shot tells of restitution and frictions, and more, with covariance.
 
         Size is the distance of two stones' centres as they hit each other over two radii, loss
         that of spin times speed, m rad/s³, and inertia k in I = k m R².
         """
-        return None if self.whole is None else self.whole.joint((*LAWS, "size", "loss", "inertia"))
+        return (
+            None
+            if self.shot_fit is None
+            else self.shot_fit.joint((*LAWS, "size", "loss", "inertia"))
+        )
 
 
 def estimate(
     detections: pd.DataFrame,
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
@@ -152,15 +154,15 @@ def estimate(
     ----------
     detections : DataFrame
         `curlshot.data.tracks.DETECTION_COLUMNS`.
-    contacts : sequence of Contact
-        The hits, as `curlshot.physics.local_fit.contacts.find_contacts` gives them.
+    contacts : sequence of HitCandidate
+        The hits, as `curlshot.physics.local_fit.hit_detection.detect_hits` gives them.
     radius : float
         Of the discs, m.
     masses : mapping, optional
         Stone to mass in any unit; equal where absent.
     """
 
-    def centred(fit: GlobalFit) -> Local:
+    def centred(fit: ShotFit) -> Local:
         over = centred_traces(seen.known, fit)
         if over is seen.known:
             return seen
@@ -174,9 +176,9 @@ def estimate(
         restitution = _of_two(restitution, fitted["restitution"])
         wider = _of_two(Estimate(friction.value, friction.stderr), fitted["friction"])
         friction = replace(friction, stderr=wider.stderr)
-    if whole is not None and restitution.value is not None and whole.told("restitution"):
+    if whole is not None and restitution.value is not None and whole.identifies("restitution"):
         restitution = whole["restitution"]
-    if whole is not None and friction.value is not None and whole.told("friction"):
+    if whole is not None and friction.value is not None and whole.identifies("friction"):
         friction, unsure = _friction(whole), None
     warnings = (unsure, *local.warnings, doubt or end, *_astray(off))
     return Estimates(
@@ -203,35 +205,40 @@ def _rests(local: Local) -> dict[str, float]:
     }
 
 
-def _global(fit: GlobalFit | None, doubt: str | None) -> Method:
+def _global(fit: ShotFit | None, doubt: str | None) -> Method:
     """Return what the whole shot says, used or not."""
     if fit is None:
-        return Method(note=doubt or "the whole shot is not fitted: no stone glides")
-    rub = Told(note="any friction above what stops the stones sliding on each other does the same")
-    if fit.told("stone_friction"):
-        rub = Told(*_pair(fit["stone_friction"]))
+        return Method(note=doubt or "no shot fit: no stone glides")
+    rub = NotedEstimate(
+        note=(
+            "not identifiable: any friction that stops the stones sliding on each other gives"
+            " the same motion"
+        )
+    )
+    if fit.identifies("stone_friction"):
+        rub = NotedEstimate(*_pair(fit["stone_friction"]))
     elif "stone_friction" in fit.names:
-        rub = Told(note="the shot tells no more of it than was known beforehand")
-    known = {name: fit[name] for name in ("restitution", "friction") if fit.told(name)}
+        rub = NotedEstimate(note="not identifiable: the shot adds nothing to the prior")
+    known = {name: fit[name] for name in ("restitution", "friction") if fit.identifies(name)}
     return Method(
         known.get("restitution", Estimate()), known.get("friction", Estimate()), rub, note=doubt
     )
 
 
-def _curl(fit: GlobalFit | None, doubt: str | None) -> Told:
+def _curl(fit: ShotFit | None, doubt: str | None) -> NotedEstimate:
     """Turn of the paths at 1 m/s, rad/s, where it shows."""
     if fit is None:
-        return Told(note=doubt or "the whole shot is not fitted")
+        return NotedEstimate(note=doubt or "no shot fit")
     if "turn" in fit.fixed:
-        return Told(note="no curl shows: the shot is as well explained without")
-    return Told(*_pair(fit["turn"]))
+        return NotedEstimate(note="not identifiable: the shot is explained as well without curl")
+    return NotedEstimate(*_pair(fit["turn"]))
 
 
 def _pair(estimate: Estimate) -> tuple[float | None, float | None]:
     return estimate.value, estimate.stderr
 
 
-def _friction(whole: GlobalFit) -> Friction:
+def _friction(whole: ShotFit) -> Friction:
     """Friction of the ice at 1 m/s with the law that the whole shot was fitted with."""
     mu = whole["friction"]
     if "slope" in whole.fixed:
@@ -245,19 +252,19 @@ class _Whole(NamedTuple):
 
     Attributes
     ----------
-    fit : GlobalFit or None
+    fit : ShotFit or None
     local : Local
         What the paths beside the hits say: as sighted, or, where that goes with the fit, with what
         the fit has caps beside the centres by taken out of the detections.
-    off : tuple of Misfit
+    off : tuple of TrackResidual
         How far each track is from the fit, where that follows the shot.
     doubt, end : str or None
         Why what the fit gives is not to be used; how far it goes.
     """
 
-    fit: GlobalFit | None
+    fit: ShotFit | None
     local: Local
-    off: tuple[Misfit, ...] = ()
+    off: tuple[TrackResidual, ...] = ()
     doubt: str | None = None
     end: str | None = None
 
@@ -266,24 +273,24 @@ def _whole(
     seen: Local,
     radius: float,
     masses: Mapping[str, float],
-    centred: Callable[[GlobalFit], Local],
+    centred: Callable[[ShotFit], Local],
 ) -> _Whole:
     """Fit the whole shot through the simulator, and hold it against the paths beside the hits."""
     hits = seen.fit is not None and bool(seen.fit.meetings)
     if seen.fit is None or not (hits or seen.friction.value):
         return _Whole(None, seen)
-    watched = watch(
+    observed = observe(
         seen.known, seen.fit, radius,
         priors=loose_priors(radius), masses=masses,
         bystanders=() if hits else _beside(seen, radius),
     )  # fmt: skip
-    if watched is None or (hits and not watched.hits):
+    if observed is None or (hits and not observed.hits):
         return _Whole(None, seen, doubt=LED_ASTRAY if hits else None)
     try:
-        fit, part = fit_followed(watched)
+        fit, part = fit_valid_interval(observed)
     except InputError:
-        return _Whole(None, seen, doubt=f"whole shot: no stones that slide move so; {INSTEAD}")
-    off = misfits(watched, fit) if followed(fit) else ()
+        return _Whole(None, seen, doubt=f"shot fit: no sliding stones move like this; {INSTEAD}")
+    off = track_residuals(observed, fit) if followed(fit) else ()
     # Caps beside the centres turn with the stones; paths beside a hit take that for velocity.
     over = centred(fit) if _fits(fit) else seen
     agrees = _doubt(fit, over.restitution) is None
@@ -291,21 +298,23 @@ def _whole(
     doubt = doubt or _other_ice(seen.friction, fit["friction"])
     so_far = part if hits else "until something else moves a stone"
     if doubt is None and so_far is not None and _blunt(fit["friction"], seen.friction):
-        doubt = f"whole shot: the simulator follows it {so_far}, too short; {INSTEAD}"
-    end = None if part is None else f"whole shot: the simulator follows it {part}"
+        doubt = (
+            f"shot fit: the simulator reproduces the shot {so_far}, which is too short; {INSTEAD}"
+        )
+    end = None if part is None else f"shot fit: the simulator reproduces the shot {part}"
     agrees = agrees and _other_ice(over.friction, fit["friction"]) is None
     return _Whole(fit, over if agrees and doubt is None else seen, off, doubt, end)
 
 
-def _astray(off: Sequence[Misfit]) -> Iterator[str]:
+def _astray(off: Sequence[TrackResidual]) -> Iterator[str]:
     """Name the tracks that are not as in the simulated shot."""
     for one in off:
-        if one.certain:
+        if one.significant:
             alone = all(other.stone == one.stone for other in off)
-            so = "hardly counted there" if one.left_out else ALONE if alone else TOO_FEW
+            so = "it has little weight there" if one.downweighted else ALONE if alone else TOO_FEW
             yield (
-                f"whole shot: from {one.t0:.2f} to {one.t1:.2f} s the track of {one.stone} is"
-                f" {_times(one.size)} times its errors off a path on this ice; {so}"
+                f"shot fit: from {one.t0:.2f} to {one.t1:.2f} s the track of {one.stone} deviates"
+                f" from a path on this ice by {_times(one.rms_ratio)} times its errors; {so}"
             )
 
 
@@ -325,23 +334,23 @@ def _beside(local: Local, radius: float) -> list[str]:
     )
 
 
-def _doubt(fit: GlobalFit, local: Estimate) -> str | None:
+def _doubt(fit: ShotFit, local: Estimate) -> str | None:
     """Say why what a fit of the whole shot gives is not to be used, None where it is."""
     if not followed(fit):
-        return f"whole shot: the simulator does not follow it; {INSTEAD}"
+        return f"shot fit: the simulator does not reproduce the shot; {INSTEAD}"
     if fit.misfit > POOR_FIT:
         return (
-            "whole shot: the simulated paths differ from the tracks by more than their errors"
-            f" (variance × {fit.misfit:.0f}); {INSTEAD}"
+            "shot fit: simulated paths and tracks differ by more than their errors (variance ×"
+            f" {fit.misfit:.0f}); {INSTEAD}"
         )
-    if fit.astray:
-        return f"whole shot: stones are far from their simulated paths; {INSTEAD}"
+    if fit.diverged:
+        return f"shot fit: stones are far from their simulated paths; {INSTEAD}"
     return _disagreement(local, fit["restitution"])
 
 
-def _fits(fit: GlobalFit) -> bool:
+def _fits(fit: ShotFit) -> bool:
     """Whether a fit of the whole shot is as it was seen."""
-    return followed(fit) and fit.misfit <= POOR_FIT and not fit.astray
+    return followed(fit) and fit.misfit <= POOR_FIT and not fit.diverged
 
 
 def _of_two(local: Estimate, whole: Estimate) -> Estimate:
@@ -368,9 +377,9 @@ def _other_ice(local: Friction, whole: Estimate) -> str | None:
     if abs(whole.value - local.value) <= OTHER_ICE * max(local.stderr, whole.stderr):
         return None
     return (
-        f"friction: {local.value:.4f} ± {local.stderr:.4f} from the glides,"
-        f" {whole.value:.4f} ± {whole.stderr:.4f} from the whole shot, which disagree;"
-        " the first used, its error widened by that"
+        f"friction: {local.value:.4f} ± {local.stderr:.4f} from the glides and {whole.value:.4f}"
+        f" ± {whole.stderr:.4f} from the shot fit disagree; the first is used, with its error"
+        " enlarged by the difference"
     )
 
 
@@ -386,13 +395,13 @@ def _disagreement(local: Estimate, whole: Estimate) -> str | None:
         return None
     if _blunt(whole, local):
         return (
-            f"whole shot: tells the restitution to ± {whole.stderr:.2g} only;"
-            f" {INSTEAD} (± {local.stderr:.2g})"
+            f"shot fit: its error of the restitution is ± {whole.stderr:.2g}; {INSTEAD} (±"
+            f" {local.stderr:.2g})"
         )
     if abs(whole.value - local.value) <= 3 * max(local.stderr, whole.stderr):
         return None
     return (
-        f"restitution: {local.value:.3f} ± {local.stderr:.3f} beside the hits,"
-        f" {whole.value:.3f} ± {whole.stderr:.3f} from the whole shot, which disagree;"
-        " the first used, its error widened by that"
+        f"restitution: {local.value:.3f} ± {local.stderr:.3f} from the local estimates and"
+        f" {whole.value:.3f} ± {whole.stderr:.3f} from the shot fit disagree; the first is used,"
+        " with its error enlarged by the difference"
     )

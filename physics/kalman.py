@@ -28,15 +28,15 @@ from curlshot.data.tracks import TRACK_COLUMNS, Columns, Table, no_rows, teams
 from curlshot.physics.filter.rate_filter import filtered, shared_response
 from curlshot.physics.filter.spin_loss import spin_loss
 from curlshot.physics.filter.stretch import GATE, PATIENCE, START_SD, Filter, Model, Stretch
-from curlshot.physics.local_fit.contacts import Contact, cut_all
 from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.glides import free, measure_glides
+from curlshot.physics.local_fit.hit_detection import HitCandidate, cut_all
 from curlshot.physics.local_fit.last_pictures import widen_last
 from curlshot.physics.local_fit.noise import Noise, noises
 from curlshot.physics.local_fit.off_centre import centred
 from curlshot.physics.local_fit.segments import lies_still
 from curlshot.physics.local_fit.shared_spin import share_spins
-from curlshot.physics.local_fit.shot_fit import ShotFit
+from curlshot.physics.local_fit.solution import LocalFit
 from curlshot.physics.local_fit.traces import Trace, traces
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ it); clip by clip these are .90 to .98 in 28, fewer in 5 and more in 35 (with 0.
 
 def smooth(
     detections: Table,
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
@@ -73,7 +73,7 @@ def smooth(
 
 def smoothed(
     detections: Table,
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
@@ -87,7 +87,7 @@ def smoothed(
     detections : Table
         Of `curlshot.data.tracks.DETECTION_COLUMNS` at least ``stone, t, x, y``; standard deviations
         are estimated where missing, frames without a number are counted.
-    contacts : sequence of Contact
+    contacts : sequence of HitCandidate
         The hits. The filter never runs across one. What both sides share is put right besides:
         their spins, by how hits change them; caps beside centres; and where a stone was seen once
         at most between two hits, its way is told by its motion outside them.
@@ -157,8 +157,8 @@ def _repeating(frames: NDArray[np.int64], duplicates: Mapping[int, Duplicate]) -
 
 
 def _fit_pieces(
-    known: dict[str, Trace], contacts: Sequence[Contact], radius: float
-) -> tuple[ShotFit, Model, dict[str, Noise]]:
+    known: dict[str, Trace], contacts: Sequence[HitCandidate], radius: float
+) -> tuple[LocalFit, Model, dict[str, Noise]]:
     """Fit each stretch between hits by itself: rests, the law of the ice, noise of detections."""
     by_hits, _ = cut_all(known, contacts, radius)
     pieces = [replace(piece, opens=None, closes=None) for piece in by_hits]
@@ -182,7 +182,7 @@ class _Stone:
     t, frames, row, part : (n,) array
         Times, s, with their frames, the detection nearest to each, and how many hits it comes
         after.
-    hits : sequence of Contact
+    hits : sequence of HitCandidate
         Of the stone, in order of time.
     stretches : list of (array of int, Stretch)
         Which of the times each holds, and what the filter is given.
@@ -193,7 +193,7 @@ class _Stone:
     frames: NDArray[np.int64]
     row: NDArray[np.int64]
     part: NDArray[np.int64]
-    hits: Sequence[Contact]
+    hits: Sequence[HitCandidate]
     stretches: list[tuple[NDArray[np.intp], Stretch]]
 
     @property
@@ -206,8 +206,8 @@ def _cut_at_hits(
     trace: Trace,
     t: Floats,
     frames: NDArray[np.int64],
-    hits: Sequence[Contact],
-    fit: ShotFit,
+    hits: Sequence[HitCandidate],
+    fit: LocalFit,
     model: Model,
     noise: Noise,
     radius: float,
@@ -220,9 +220,9 @@ def _cut_at_hits(
         The detections.
     t, frames : (n,) array
         Times at which states are wanted, s, and their frames.
-    hits : sequence of Contact
+    hits : sequence of HitCandidate
         Of the stone, in order of time.
-    fit : ShotFit
+    fit : LocalFit
         Of the pieces of all stones, each by itself.
     model : Model
         How the ice slows it.
@@ -313,7 +313,7 @@ def _carry(cut: Stretch, mean: Floats, spread: Floats, at: NDArray[np.intp]) -> 
         mean[rows, 4:], spread[rows, 4:] = np.nan, np.nan
 
 
-def _residuals(fit: ShotFit, piece: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:
+def _residuals(fit: LocalFit, piece: NDArray[np.int64], t: Floats, xy: Floats) -> Floats:
     """How far detections are from the fits of their pieces, (n, 2), m; NaN where there are none."""
     out = np.empty_like(xy)
     for rank in np.unique(piece):
@@ -340,7 +340,7 @@ def _false_start(at: NDArray[np.intp], residual: Floats) -> NDArray[np.intp]:
 
 
 def _modes(
-    stone: str, t: Floats, fit: ShotFit
+    stone: str, t: Floats, fit: LocalFit
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], NDArray[np.bool_], Floats]:
     """Per time: rank of its piece, whether it rests, whether its spin does too, rough velocity."""
     ranks = np.zeros(len(t), dtype=int)
@@ -361,7 +361,7 @@ def _modes(
 
 
 def _motions(
-    trace: Trace, piece: NDArray[np.int64], rest: NDArray[np.bool_], fit: ShotFit, radius: float
+    trace: Trace, piece: NDArray[np.int64], rest: NDArray[np.bool_], fit: LocalFit, radius: float
 ) -> NDArray[np.int64]:
     """Tell motions apart: pieces, but a rest that is kept apart for a hit is one with its stop."""
     out = piece.copy()
@@ -375,7 +375,7 @@ def _motions(
 
 
 def _interpolate(
-    hits: Sequence[Contact],
+    hits: Sequence[HitCandidate],
     part: NDArray[np.int64],
     t: Floats,
     mean: Floats,
@@ -389,7 +389,7 @@ def _interpolate(
 
     Parameters
     ----------
-    hits : sequence of Contact
+    hits : sequence of HitCandidate
         Of the stone, in order of time.
     part : (n,) array of int
         How many of them each row comes after.
@@ -419,7 +419,7 @@ def _interpolate(
 
 
 def _widen(
-    hits: Sequence[Contact], part: NDArray[np.int64], t: Floats, mean: Floats, spread: Floats
+    hits: Sequence[HitCandidate], part: NDArray[np.int64], t: Floats, mean: Floats, spread: Floats
 ) -> None:
     """Widen the errors of velocity and spin of rows that may lie on the other side of a hit.
 

@@ -15,6 +15,9 @@ Floats = NDArray[np.float64]
 QUANTILES = (0.025, 0.16, 0.5, 0.84, 0.975)
 """Quantiles of the summary."""
 
+NO_SAMPLES = "no samples: neither restitution nor friction is identifiable"
+"""Warning of a shot of which samples were asked for and there are none."""
+
 BATCHES = 100
 """Batches of draws among which those that can be must be found."""
 
@@ -92,12 +95,12 @@ def summarise(sample: pd.DataFrame) -> Posterior:
 def _joint(estimates: Estimates) -> tuple[Floats, Floats]:
     """Mean and covariance of `LAWS`, NaN where unknown."""
     mean, cov = np.full(len(LAWS), np.nan), np.zeros((len(LAWS), len(LAWS)))
-    whole = estimates.whole
+    whole = estimates.shot_fit
     alone: dict[str, Estimate] = {
         "restitution": estimates.restitution,
         "friction": estimates.friction,
     }
-    at = [] if whole is None else [k for k, name in enumerate(LAWS) if whole.told(name)]
+    at = [] if whole is None else [k for k, name in enumerate(LAWS) if whole.identifies(name)]
     if whole is not None and at:
         ranks = [whole.names.index(LAWS[k]) for k in at]
         mean[at] = whole.values[ranks]

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from curlshot.data.measurement import Measurement
-    from curlshot.data.results import Collision, Results
+    from curlshot.data.results import Hit, Results
     from curlshot.physics.estimate import Estimates
-    from curlshot.physics.local_fit.contacts import Contact
-    from curlshot.physics.whole_shot.priors import Priors
+    from curlshot.physics.local_fit.hit_detection import HitCandidate
+    from curlshot.physics.shot_fit.priors import Priors
 
 
-def times_of_hits(contacts: Sequence[Contact], hits: Sequence[Collision]) -> list[Contact]:
+def times_of_hits(contacts: Sequence[HitCandidate], hits: Sequence[Hit]) -> list[HitCandidate]:
     """Return contacts at the times that are reported of their hits, so that tracks break there."""
     out = []
     for contact in contacts:
@@ -69,12 +69,12 @@ def gather_results(
         friction=fit.friction,
         collisions=fit.collisions,
         glides=fit.glides,
-        laws=fit.laws,
+        joint_estimate=fit.joint_estimate,
         methods=fit.methods,
-        law_choice=() if fit.whole is None else fit.whole.laws,
+        model_selection=() if fit.shot_fit is None else fit.shot_fit.laws,
         curl=fit.curl,
         stones=fit.by_stone,
-        misfits=fit.misfits,
+        residuals=fit.residuals,
         posterior=None if posterior is None else summarise(posterior),
         **more,
     )

@@ -120,13 +120,15 @@ def _frames(
     axes = part.subplots(-(-len(looks) // columns), columns, squeeze=False).ravel()
     for ax, look in zip(axes, looks, strict=False):
         _show(ax, _drawn(look, paint, radius, reasons, width))
-        where = "" if look.camera.found else ", carried"
+        where = "" if look.camera.found else ", carried over"
         ax.set_title(f"frame {look.frame.index}, {look.frame.t:.2f} s{where}", fontsize=8)
     for ax in axes[len(looks) :]:
         ax.axis("off")
     key = "; ".join(f"{number} {text}" for number, text in enumerate(reasons, 1))
-    refused = f"; refused: red, since {key if len(reasons) > 1 else reasons[0]}" if reasons else ""
-    part.supxlabel(f"stones taken: green{refused}", fontsize=9)
+    refused = (
+        f"; rejected: red, because {key if len(reasons) > 1 else reasons[0]}" if reasons else ""
+    )
+    part.supxlabel(f"accepted stones: green{refused}", fontsize=9)
 
 
 def _drawn(look: Look, paint: Paint, radius: float, reasons: Sequence[str], width: int) -> Image:
@@ -179,7 +181,9 @@ def _average(ax: Axes, looks: Sequence[Look], paint: Paint) -> None:
         down, across = max(down, 0), max(across, 0)
         layer[down : down + part.shape[0], across : across + part.shape[1]] = part
         layers.append(layer)
-    ax.set_title("from above" if len(looks) == 1 else "median from above: sharp if followed well")
+    ax.set_title(
+        "top view" if len(looks) == 1 else "median top view: sharp where the camera track is good"
+    )
     if layers:
         stack = np.stack(layers)
         shown = np.isfinite(stack).any(0)
@@ -208,9 +212,9 @@ def _courses(cameras: pd.DataFrame) -> list[tuple[str, float, str, str]]:
     """Tell what is known of the cameras over time: its column, factor, colour, what it is."""
     courses = []
     if cameras["rms_px"].notna().any():
-        courses.append(("rms_px", 1.0, BLUE, "residual of the edges (px)"))
+        courses.append(("rms_px", 1.0, BLUE, "edge residual (px)"))
     if (cameras["sd"] > 0).any():
-        courses.append(("sd", 1000.0, VERMILLION, "stated error at the\n12-ft ring (mm, one sd)"))
+        courses.append(("sd", 1000.0, VERMILLION, "estimated error at the\n12-ft ring (mm, 1 sd)"))
     return courses
 
 
@@ -231,6 +235,8 @@ def _residuals(
         ax.set_ylabel(label)
         ax.set_ylim(0, max(1.2 * float(np.nanmax(value)), 0.1))
     axes[0].set_title(
-        "shaded: carried without rings in view" if carried.any() else "rings seen in every frame"
+        "shaded: carried over, rings not visible"
+        if carried.any()
+        else "rings visible in every frame"
     )
     axes[-1].set_xlabel("time (s)")

@@ -47,6 +47,14 @@ def check(
     ------
     curlshot.data.errors.CurlshotError
         Where the input cannot be used; one line says why.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> figure, lines = curlshot.check(curlshot.sample_clip(), frames=(0, 0))
+    >>> lines[0]
+    'input       sample.mp4: 1 frame'
+    >>> figure.savefig("check.png")
     """
     config = config.replace(**settings)
     files = find_inputs(inputs)

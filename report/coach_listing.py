@@ -35,8 +35,8 @@ def _stones(rest: pd.DataFrame, unit: Unit) -> Table:
     return Table(
         "coach_stones",
         "Where the stones stopped",
-        f"{lies} Centres of the stones, from the tee; turns counter-clockwise; curl of the"
-        " thrown stone, to the left of where it was heading.",
+        f"{lies} Centres of the stones, from the tee; rotations counter-clockwise; curl of the"
+        " thrown stone, to the left of its initial heading.",
         (
             Column("stone", "stone", kind="word"),
             Column("team", "team", kind="note"),
@@ -55,7 +55,7 @@ def _stones(rest: pd.DataFrame, unit: Unit) -> Table:
 def _speeds(speeds: pd.DataFrame, unit: Unit) -> Table:
     return Table(
         "coach_speeds",
-        "Speeds on the way",
+        "Speeds at the hog lines and the tee",
         "",
         (
             Column("stone", "stone", kind="word"),
@@ -72,8 +72,8 @@ def _hits(takeouts: pd.DataFrame, unit: Unit) -> Table:
     speed = _speed(unit)
     return Table(
         "coach_hits",
-        "What each hit took and gave",
-        "The first stone arrives and goes on, the second is struck.",
+        "Speeds before and after each hit",
+        "The first stone arrives and goes on, the second one is hit.",
         (
             Column("hit", "hit", kind="word"),
             Column("stones", "stones", kind="word"),
@@ -81,7 +81,7 @@ def _hits(takeouts: pd.DataFrame, unit: Unit) -> Table:
             Column("goes on at", "left", stderr="sd_left", **speed),
             Column("loses", "lost", stderr="sd_lost", **speed),
             Column("of its speed", "share", "%", decimals=0, factor=100),
-            Column("struck stone leaves at", "struck", stderr="sd_struck", **speed),
+            Column("hit stone leaves at", "struck", stderr="sd_struck", **speed),
         ),
         takeouts,
     )

@@ -74,7 +74,7 @@ class Column:
             if isinstance(value, float) and value.is_integer():
                 value = int(value)
             text = "" if value is None or value != value else str(value)
-            return (self.lengths.told(text) if self.kind == "note" else text), None
+            return (self.lengths.converted(text) if self.kind == "note" else text), None
         number = self._number(row, self.key)
         if self.stderr is not None:
             return parts(number, self._number(row, self.stderr), self.decimals)

@@ -59,9 +59,12 @@ def pictures(
         "plan",
         "Plan view: "
         + ("measured paths (solid)" if moved else "nothing moved")
-        + (" and simulated ones (broken)" if len(simulations) else "")
-        + ("; crosses where stones touched" if collisions else "")
-        + ". Each stone where it was last seen, to scale; shaded how well its place is known.",
+        + (" and simulated ones (dashed)" if len(simulations) else "")
+        + ("; crosses mark the hits" if collisions else "")
+        + (
+            ". Each stone is shown to scale at its last detected place; shading shows the"
+            " uncertainty of the place."
+        ),
         f"Plan view of the sheet with {tracks['stone'].nunique()} stones, of which {len(moved)}"
         f" moved, and {len(collisions)} hits.",
         partial(figures.plan_figure, tracks, simulations, collisions, house=house, radius=radius),
@@ -69,8 +72,8 @@ def pictures(
     if moved:
         yield Picture(
             "speed",
-            "Speed of each stone that moved, with two standard deviations either side. Numbered"
-            " lines are the hits.",
+            "Speed of each moving stone, with two standard errors either side. Numbered lines"
+            " are the hits.",
             "Speed against time of stones " + ", ".join(moved) + ".",
             partial(figures.speed_figure, tracks, collisions, radius),
         )
@@ -79,8 +82,8 @@ def pictures(
         first, second = collision.stones
         yield Picture(
             f"hit_{rank}",
-            f"Hit {rank}, {first} on {second}: velocities before and after it in its normal (n)"
-            " and tangential (t) axes.",
+            f"Hit {rank}, {first} on {second}: velocities before and after, in normal (n) and"
+            " tangential (t) axes.",
             f"Stones {first} and {second} touching, with arrows for their velocities.",
             partial(figures.hit_figure, collision, rank, radius),
         )
@@ -88,31 +91,31 @@ def pictures(
         curling = curling_size(radius)
         yield Picture(
             "friction",
-            "Friction of each glide, two standard errors either side, over the speeds that it"
-            " spans, and the law of the whole shot (black)"
-            + ("; grey what others measured and laws they propose." if curling else "."),
-            "Friction against speed: a bar for each glide and a line for the whole shot.",
+            "Friction of each glide with two standard errors, over its range of speeds, and the"
+            " law of the shot fit (black)"
+            + ("; grey: measurements and laws from the literature." if curling else "."),
+            "Friction against speed: a bar for each glide and a line for the shot fit.",
             partial(
                 figures.friction_figure, results.glides, results.friction, tracks, curling=curling
             ),
         )
-    if results.laws is not None or posterior is not None:
+    if results.joint_estimate is not None or posterior is not None:
         yield Picture(
             "posterior",
-            "What is known of restitution and friction together: each alone on the diagonal, pairs"
+            "Joint uncertainty of restitution and friction: each alone on the diagonal, pairs"
             " below it.",
             "Distributions of restitution and friction, and ellipses for their pairs.",
-            partial(figures.posterior_figure, results.laws, posterior),
+            partial(figures.posterior_figure, results.joint_estimate, posterior),
         )
     if residuals is not None and residuals["t"].nunique() > 1:
         yield Picture(
             "residuals",
-            "Sighted less smoothed places of all stones, the band twice the median standard"
-            " deviation, carets for what lies beyond the edge; right, in standard deviations,"
-            " against the normal distribution. Bars along the top: tracks that the fit of the"
-            " whole shot hardly counts, for they are not of a stone on this ice.",
+            "Detections minus smoothed places of all stones. Band: twice the median standard"
+            " deviation; carets: outside the plot. Right: in standard deviations, with the normal"
+            " distribution. Bars along the top: segments with little weight in the shot fit,"
+            " since ice and hits do not explain their motion.",
             "Residuals of x and y against time, and their histograms.",
-            partial(figures.residuals_figure, residuals, collisions, results.misfits),
+            partial(figures.residuals_figure, residuals, collisions, results.residuals),
         )
 
 
@@ -129,25 +132,25 @@ def _stones(
         name = _file_name(stone, used)
         yield Picture(
             f"motion_{name}",
-            f"Stone {stone}: place and speed against time, two standard deviations either side,"
-            " dotted where no frame showed it; straight pieces and numbers are the velocities"
-            " just before and after each hit, and the friction of each glide.",
+            f"Stone {stone}: place and speed against time, with two standard errors; dotted where"
+            " no frame shows it. Straight pieces and numbers: velocities just before and after"
+            " each hit, and the friction of each glide.",
             f"x, y and speed of stone {stone} against time.",
             partial(figures.motion_figure, tracks, stone, collisions, results.glides),
         )
         if stone in turned:
             yield Picture(
                 f"spin_{name}",
-                f"Stone {stone}: angle and spin against time, drawn likewise; points are the spins"
-                " just before and after each hit.",
+                f"Stone {stone}: angle and spin against time, in the same style; points are the"
+                " spins just before and after each hit.",
                 f"Angle and spin of stone {stone} against time.",
                 partial(figures.spin_figure, tracks, stone, collisions),
             )
         if any((table["stone"] == stone).any() for table in simulations.values()):
             yield Picture(
                 f"simulated_{name}",
-                f"Stone {stone}: the simulated motion of each model against the measured one, each"
-                " with two standard deviations either side.",
+                f"Stone {stone}: the simulated motion of each model and the measured one, each"
+                " with two standard errors.",
                 f"Simulated and measured x and y of stone {stone} against time.",
                 partial(figures.comparison_figure, tracks, simulations, stone, collisions),
             )

@@ -59,7 +59,7 @@ _HITS = (
     Column("e", "restitution", stderr="stderr"),
     Column("momentum missing", "momentum_residual", stderr="stderr_momentum"),
     Column("energy lost", "energy_lost", "%", decimals=0, factor=100),
-    Column("stone on stone friction", "stone_friction", stderr="stderr_stone_friction"),
+    Column("friction between stones", "stone_friction", stderr="stderr_stone_friction"),
     Column("note", "note", kind="note"),
     Column("note on that friction", "note_stone_friction", kind="note"),
 )
@@ -119,7 +119,7 @@ def page_tables(
         Table(
             "table_1_laws",
             "Restitution and friction",
-            "Literature as value ± standard error, or as the range that was measured.",
+            "Literature as value ± standard error, or as the measured range.",
             _LAWS,
             tables.law_table(results),
         ),
@@ -127,7 +127,7 @@ def page_tables(
             "table_2_measured",
             "Measured before and after each hit",
             "Places and velocities of the centres, and spins, at the instant of contact, from"
-            " fits to either side of it.",
+            " fits before and after it.",
             _STATES,
             tables.measured_table(results.collisions),
         ),
@@ -144,30 +144,31 @@ def page_tables(
         _methods(results),
         Table(
             "laws_tried",
-            "Laws that the whole shot was fitted with",
-            "The criterion is minus twice the log probability of the detections, less that of the"
-            " best; the weight is the probability of these laws. What the others would give is in"
-            " the errors.",
+            "Laws tried in the shot fit",
+            "The criterion is minus twice the log probability of the detections, minus that of"
+            " the best choice. The weight is the probability of these laws. The errors include"
+            " the differences between the choices.",
             _CHOICES,
             tables.choice_table(results),
         ),
         Table(
             "glides",
             "Glides",
-            f"Friction of each free glide that tells it to {WORST:g} or better. Shorter ones are"
-            " left out, as are those slower than a radius a second, which hardly go on.",
+            f"Friction of each free glide with an error of {WORST:g} or less. Shorter glides are"
+            " left out, and those slower than one radius a second.",
             _GLIDES,
             tables.glide_table(results.glides),
         ),
         Table(
             "ice",
             "The ice by stone",
-            f"Turn of the path to the left, at the mean speed of the glides. {_curl(results)}",
+            "Turn rate of the path, left positive, at the mean speed of the glides."
+            f" {_curl(results)}",
             _ICE,
             tables.ice_table(results),
         ),
         _scores(results),
-        _foretold(results),
+        _predicted(results),
     ]
     return [table for table in made if len(table.frame)]
 
@@ -184,9 +185,9 @@ def _methods(results: Results) -> Table:
     ]
     return Table(
         "methods",
-        "Restitution and friction, method by method",
-        "Local: from the paths beside the hits. Global: one fit of the whole shot. Finite"
-        " differences: as the study had them.",
+        "Restitution and friction by method",
+        "Local: from the paths just before and after the hits. Shot fit: one fit of the whole"
+        " shot. Finite differences: the method of the study.",
         (
             Column("method", "method", kind="word"),
             Column("e", "restitution", stderr="sd_restitution"),
@@ -200,14 +201,14 @@ def _methods(results: Results) -> Table:
 
 
 def _simulated(results: Results) -> list[Table]:
-    start = "start that fits the shot best" if results.laws else "state before the first hit"
+    start = "start of the shot fit" if results.joint_estimate else "state before the first hit"
     order = sorted(results.simulations, key=lambda model: (_PAPER.get(model, 5), model))
     return [
         Table(
             f"table_{_PAPER.get(model, 5 + k - len(_PAPER))}_{_plain(model)}",
             f"Simulated before and after each hit: {model}",
-            f"From the {start}. — where the simulation has no such hit; errors are those of the"
-            " start and of the laws.",
+            f"From the {start}. — where the simulation has no such hit. The errors come from"
+            " those of the start and of the laws.",
             _STATES,
             tables.simulated_table(results.simulations[model], results.collisions),
         )
@@ -217,22 +218,26 @@ def _simulated(results: Results) -> list[Table]:
 
 
 def _scores(results: Results) -> Table:
-    how = "as fitted to the whole shot" if results.laws else "from before the first hit"
+    how = (
+        "with the laws and the start of the shot fit"
+        if results.joint_estimate
+        else "from the state before the first hit"
+    )
     return _off(
         "models",
         "Simulated against measured",
-        f"The shot again, {how}.",
+        f"The shot simulated {how}.",
         results.simulations,
     )
 
 
-def _foretold(results: Results) -> Table:
+def _predicted(results: Results) -> Table:
     known = {name: guess for name, guess in results.predictions.items() if guess.rmse is not None}
     how = next(map(assumed, known.values()), "")
     return _off(
         "predictions",
         "Predicted against measured",
-        f"From what was seen before the first hit and is known of μ beforehand, with {how}.",
+        f"From the motion before the first hit and prior knowledge of μ, with {how}.",
         known,
     )
 
@@ -250,8 +255,8 @@ def _off(
     return Table(
         name,
         title,
-        f"{note} Root mean square distance over all stones and times after the first hit, and the"
-        " distance of the last places ± how far off they may be as far as is known.",
+        f"{note} Root mean square distance over all stones and times after the first hit;"
+        " distance of the last places ± its expected size, one standard error.",
         (
             Column("model", "model", kind="word"),
             Column("rms", "rmse", "mm", factor=1000),

@@ -110,12 +110,12 @@ def check_lines(
     """
     carried = int((cameras["found"] == 0).sum())
     rms, sd = cameras["rms_px"], 1000 * cameras["sd"]
-    edges = f"edges {rms.median():.2f} px off, worst frame {rms.max():.2f} px"
+    edges = f"edge residual {rms.median():.2f} px, worst frame {rms.max():.2f} px"
     if rms.isna().all():
         edges = "edges not measured"
     lines = [
         f"input       {name}: {count(read, 'frame')}",
-        f"camera      known in {count(len(cameras), 'frame')}, carried in {carried} of them;"
+        f"camera      known in {count(len(cameras), 'frame')}, carried over in {carried} of them;"
         f" {edges}",
     ]
     if sd.max() > 0:
@@ -124,7 +124,7 @@ def check_lines(
             f" worst frame {sd.max():.1f} mm (one standard error)"
         )
     most = max(len(look.stones) for look in looks)
-    lines.append(f"stones      {most} at most in one of {count(len(looks), 'frame')} looked at")
+    lines.append(f"stones      {most} at most in one of {count(len(looks), 'frame')} examined")
     return lines + warned(warnings)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from curlshot.data.files import whole_file
 from curlshot.data.progress import Progress, no_progress
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.data.sheet import HOUSE, STONE
 from curlshot.report.drawing import (
     WHITE,
@@ -99,7 +99,7 @@ def write_overlay(
     video: Video,
     cameras: Iterable[Camera],
     tracks: pd.DataFrame,
-    collisions: Sequence[Collision],
+    collisions: Sequence[Hit],
     path: Path,
     *,
     rings: Sequence[float] | None = RINGS,
@@ -119,7 +119,7 @@ def write_overlay(
         Found by their `frame`.
     tracks : DataFrame
         With `curlshot.data.tracks.TRACK_COLUMNS`, `frame` counting as the clip does.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         Each flashed for a moment, and named for two seconds.
     path : Path
         Ends in .mp4.
@@ -128,7 +128,7 @@ def write_overlay(
     radius : float
         Radius of the stones, m.
     progress : Progress
-        Told after each frame.
+        Called after each frame.
 
     Returns
     -------
@@ -179,7 +179,7 @@ def draw(frame: Frame, camera: Camera, scene: Scene) -> Image:
 
 def _scene(
     tracks: pd.DataFrame,
-    collisions: Sequence[Collision],
+    collisions: Sequence[Hit],
     rings: Sequence[float] | None,
     radius: float,
 ) -> Scene:

@@ -195,7 +195,7 @@ def _lead(results: Results, tracks: pd.DataFrame) -> str:
     moved = moving_stones(tracks, results.collisions, results.radius)
     stones = count(tracks["stone"].nunique(), "stone")
     which = "none of which moved" if not moved else f"of which {_listed(moved)} moved"
-    return f"{stones}, {which}, watched for {results.input.duration:.1f} s."
+    return f"{stones}, {which}, over {results.input.duration:.1f} s."
 
 
 def _listed(names: tuple[str, ...]) -> str:
@@ -237,7 +237,7 @@ def _reason(results: Results, words: str) -> str:
     for text in (*results.warnings, *notes):
         if re.search(words, text, re.IGNORECASE):
             return text
-    return "the input cannot tell"
+    return "not identifiable from this input"
 
 
 def _cautions(results: Results) -> list[str]:

@@ -94,7 +94,7 @@ def _forest(axes: Axes, shots: pd.DataFrame, name: str, mean: Pooled, label: str
     axes.set_title(f"{label.split()[1]} = {plus_minus(mean.value, mean.stderr)}")
     axes.grid(axis="y", visible=False)
     if shots[name].isna().all():
-        _nothing(axes, "no shot tells it")
+        _nothing(axes, "not known from any shot")
 
 
 def _nothing(axes: Axes, why: str) -> None:
@@ -115,4 +115,4 @@ def _against_speed(axes: Axes, hits: pd.DataFrame, mean: Pooled) -> None:
     axes.set_title("Each hit ± its standard error")
     if hits["restitution"].isna().all():
         axes.set_yticks([])
-        _nothing(axes, "no hit tells it")
+        _nothing(axes, "not known from any hit")

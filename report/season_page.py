@@ -62,7 +62,7 @@ def season_page(
     """
     stones = hits["first"].astype(str) + " on " + hits["second"].astype(str)
     tables = (
-        Table("shots", "Shots", "A click on a head sorts by it.", _SHOTS, shots),
+        Table("shots", "Shots", "Click on a column head to sort.", _SHOTS, shots),
         Table("hits", "Hits", "", _HITS, hits.assign(stones=stones)),
     )
     return (

@@ -5,9 +5,11 @@ Colours: Okabe and Ito, Color Universal Design, 2008.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from io import BytesIO
 from typing import Any
 
@@ -90,8 +92,25 @@ def styled() -> Iterator[None]:
         yield
 
 
+_SHOWN: ContextVar[bool] = ContextVar("shown", default=False)
+
+
+@contextmanager
+def shown() -> Iterator[None]:
+    """Make figures inside the block that notebooks and windows show."""
+    before = _SHOWN.set(True)
+    try:
+        yield
+    finally:
+        _SHOWN.reset(before)
+
+
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure, inches, that no window or notebook backend knows about."""
+    """Return an empty figure, inches; no window or notebook knows about it, but within `shown`."""
+    if _SHOWN.get():
+        from matplotlib import pyplot
+
+        return pyplot.figure(figsize=(width, height), layout="constrained")
     return Figure(figsize=(width, height), layout="constrained")
 
 
@@ -127,15 +146,25 @@ def render(figure: Figure) -> tuple[bytes, bytes]:
     """Return the figure as SVG and as PNG, the layout worked out once."""
     with styled():
         # By the canvases themselves: ``savefig`` would draw each once more before.
-        png = _png(figure)
+        png = png_of(figure)
         svg = BytesIO()
         figure.set_layout_engine("none")  # placed by now; a second pass would cost as much again
         FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None})  # type: ignore[no-untyped-call]
     return svg.getvalue(), png
 
 
-def _png(figure: Figure) -> bytes:
-    figure.set_dpi(PNG_DPI)
+def inline_svg(figure: Figure) -> str:
+    """Return the figure as an SVG element for a page, its text as text, which is short."""
+    svg = BytesIO()
+    with styled(), matplotlib.rc_context({"svg.fonttype": "none"}):
+        FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None})  # type: ignore[no-untyped-call]
+    text = svg.getvalue().decode()
+    return re.sub(r">\s+<", "><", text[text.index("<svg") :])
+
+
+def png_of(figure: Figure, dpi: int = PNG_DPI) -> bytes:
+    """Return the figure as PNG with a palette."""
+    figure.set_dpi(dpi)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()  # type: ignore[no-untyped-call]
     pixels = bytes(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
@@ -146,5 +175,5 @@ def _png(figure: Figure) -> bytes:
     palette[paper : paper + 3] = 255, 255, 255
     few.putpalette(palette)
     png = BytesIO()
-    few.save(png, "png", dpi=(PNG_DPI, PNG_DPI))
+    few.save(png, "png", dpi=(dpi, dpi))
     return png.getvalue()

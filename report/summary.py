@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from curlshot.data.coach_units import METRES, Unit
-from curlshot.data.results import Results, SimulationScore
+from curlshot.data.results import Hit, Results, SimulationScore
 from curlshot.data.sheet import House
 from curlshot.physics.prediction.forecast import AFTER
 from curlshot.physics.simulator.simulation import Simulation
@@ -20,6 +20,10 @@ from curlshot.report.tables import moving_stones, rest_table, shot_stone
 
 ABREAST = 3
 """Stones on a line, which then has some hundred letters."""
+FEW_HITS = 4
+"""Hits that a prompt of Python lists."""
+WIDEST = 100
+"""Letters of a line there."""
 
 
 def odds_text(odds: Mapping[str, Any], written: Sequence[Path]) -> list[str]:
@@ -75,17 +79,19 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
     }
 
 
-def simulation_text(simulation: Simulation, written: Sequence[Path]) -> str:
+def simulation_text(simulation: Simulation, written: Sequence[Path] = ()) -> str:
     """Rest positions and hits of a simulation, and the files that have it."""
     lines = ["at rest:"]
     lines += [
         f"  {name}  x {rest.x:+8.3f} m   y {rest.y:+8.3f} m   after {rest.t:6.2f} s"
-        f"{'' if rest.in_play else '   (there it left the sheet)'}"
+        f"{'' if rest.in_play else '   (where it left the sheet)'}"
         for name, rest in simulation.rest.items()
     ]
     lines.append("hits:" if simulation.hits else "no hits")
     lines += [f"  {hit.t:6.3f} s  {hit.stones[0]} on {hit.stones[1]}" for hit in simulation.hits]
-    return "\n".join([*lines, f"written: {', '.join(map(str, written))}"])
+    if written:
+        lines.append(f"written: {', '.join(map(str, written))}")
+    return "\n".join(lines)
 
 
 def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
@@ -111,7 +117,7 @@ def season_text(shots: pd.DataFrame, pooled: Mapping[str, Pooled]) -> list[str]:
         if mean.scatter is not None:
             text += f"; shot to shot {plus_minus(mean.scatter, mean.stderr_scatter)}"
         elif mean.shots:
-            text += f"; from shot to shot it may scatter by {SCATTER[name]:g} or so, as assumed"
+            text += f"; scatter from shot to shot assumed to be about {SCATTER[name]:g}"
         lines.append(text)
     return [*lines, *warned(impossible(shots))]
 
@@ -122,8 +128,8 @@ def impossible(shots: pd.DataFrame) -> list[str]:
     for name, sign in (("restitution", "e"), ("friction", "μ")):
         low, high = POSSIBLE[name]
         said += [
-            f"{shot['shot']}: {sign} = {plus_minus(shot[name], shot[f'stderr_{name}'])}"
-            " cannot be; it counts in the mean with its error"
+            f"{shot['shot']}: {sign} = {plus_minus(shot[name], shot[f'stderr_{name}'])} is"
+            " impossible; it counts in the mean with its error"
             for shot in shots.to_dict("records")
             if shot[name] < low or shot[name] > high
         ]
@@ -156,53 +162,105 @@ def summary(
 
     Of tracks that were `marked` by hand it says what is taken for the tee.
     """
-    moved = moving_stones(tracks, results.collisions, results.radius)
-    names = sorted(tracks["stone"].unique())
-    lines = [
-        f"input       {', '.join(results.input.files[:3])}"
-        f"{' …' if len(results.input.files) > 3 else ''}: "
-        + _watched(results, tracks["frame"].nunique()),
-        f"stones      {len(names)} ({', '.join(names)}); moved: {', '.join(moved) or 'none'}",
-    ]
-    for hit in results.collisions:
-        lines.append(
-            f"hit         {hit.stones[0]} on {hit.stones[1]} at {hit.t:.3f} s: "
-            f"e = {plus_minus(hit.restitution, hit.stderr)}"
-        )
-    law = "" if results.friction.value is None else f" ({_law(results.friction.law)})"
-    lines += [
-        f"restitution e = {plus_minus(results.restitution.value, results.restitution.stderr)}",
-        f"friction    μ = {plus_minus(results.friction.value, results.friction.stderr)}{law}",
-    ]
-    for models, score in _alike(results.simulations):
-        off = f"— ({score.note or 'nothing to compare'})"
-        if score.rmse is not None:
-            off = f"{unit.little(score.rmse)} RMS off"
-        # Only a shot that was fitted as a whole begins with what fits it.
-        how = "" if results.laws is None else ", as fitted"
-        lines.append(f"simulated   {models}{how}: {off}")
-        lines += _each("at the end", score.rest_error, score.rest_sd, unit)
+    lines = _measured(results, tracks, results.collisions)
+    for text, errors in _simulated(results, unit, results.simulations):
+        lines += [f"simulated   {text}", *errors]
     for model, guess in results.predictions.items():
         if guess.rmse is not None:
             lines.append(
                 f"predicted   {model}, from before the first hit, {assumed(guess)}:"
-                f" {unit.little(guess.rmse)} RMS off"
+                f" {unit.little(guess.rmse)} RMS error"
             )
-            lines += _each(f"{AFTER} s after it", guess.error_after, guess.sd_after, unit)
-            lines += _each("at the end", guess.rest_error, guess.rest_sd, unit)
+            lines += _each(
+                f"{AFTER} s after the first hit",
+                guess.error_at_comparison,
+                guess.sd_at_comparison,
+                unit,
+            )
+            lines += _each(f"{'at the end':26s}", guess.rest_error, guess.rest_sd, unit)
             lines += [f"            {guess.note}"] if guess.note else []
     notes = [guess.note for guess in results.predictions.values()]
     if all(guess.rmse is None for guess in results.predictions.values()) and any(notes):
         lines.append(f"predicted   — ({next(filter(None, notes))})")
     if house is not None and marked:
-        lines.append("house       the origin is taken for its tee (--no-house if it is not)")
-    if house is not None:
-        lines.append(f"shot stone  {_shot_stone(results, tracks, house, unit)}")
-    lines += warned(results.warnings)
-    if out is not None:
-        report = out / "report.html"
-        lines.append(f"written     {report if report.exists() else out}")
-    return "\n".join(lines)
+        lines.append("house       the origin is assumed to be its tee (`no_house` if it is not)")
+    if house is not None and len(tracks):
+        lines.append(f"shot stone  {shot_stone_text(results, tracks, house, unit)}")
+    return "\n".join([*lines, *warned(results.warnings), *_written(out)])
+
+
+def brief(results: Results, tracks: pd.DataFrame, out: Path | None, unit: Unit = METRES) -> str:
+    """Put the outcome into ten lines, for a prompt of Python; `unit` of lengths."""
+    lines = _measured(results, tracks, results.collisions[:FEW_HITS])
+    more = len(results.collisions) - FEW_HITS
+    if more > 0:
+        lines.insert(-2, f"            and {count(more, 'more hit')}")
+    lines += [f"simulated   {text}" for text in nearest_text(results, unit)]
+    if results.warnings:
+        lines.append(f"warnings    {len(results.warnings)}")
+    return "\n".join([*(_cut(line) for line in lines), *_written(out)])
+
+
+def nearest_model(results: Results) -> str | None:
+    """Return the model whose simulation is nearest to the shot; None where none is compared."""
+    known = [(score.rmse, name) for name, score in results.simulations.items()]
+    return min(((rmse, name) for rmse, name in known if rmse is not None), default=(0, None))[1]
+
+
+def nearest_text(results: Results, unit: Unit = METRES) -> list[str]:
+    """Say how far the nearest simulation is from the shot; empty where none is compared."""
+    name = nearest_model(results)
+    if name is None:
+        return []
+    return [text for text, _ in _simulated(results, unit, {name: results.simulations[name]})]
+
+
+def _cut(line: str) -> str:
+    return line if len(line) <= WIDEST else f"{line[: WIDEST - 1]}…"
+
+
+def _written(out: Path | None) -> list[str]:
+    """Name the page that a run wrote, or its folder."""
+    if out is None:
+        return []
+    report = out / "report.html"
+    return [f"written     {report if report.exists() else out}"]
+
+
+def _measured(results: Results, tracks: pd.DataFrame, collisions: Sequence[Hit]) -> list[str]:
+    """Name the input, the stones, some hits, e and μ."""
+    moved = moving_stones(tracks, results.collisions, results.radius)
+    names = sorted(tracks["stone"].unique()) or sorted(results.stones)
+    lines = [
+        f"input       {', '.join(results.input.files[:3])}"
+        f"{' …' if len(results.input.files) > 3 else ''}: "
+        + _watched(results, tracks["frame"].nunique() or results.input.frames),
+        f"stones      {len(names)} ({', '.join(names)}); moved: {', '.join(moved) or 'none'}",
+    ]
+    for hit in collisions:
+        lines.append(
+            f"hit         {hit.stones[0]} on {hit.stones[1]} at {hit.t:.3f} s: "
+            f"e = {plus_minus(hit.restitution, hit.stderr)}"
+        )
+    law = "" if results.friction.value is None else f" ({_law(results.friction.law)})"
+    return [
+        *lines,
+        f"restitution e = {plus_minus(results.restitution.value, results.restitution.stderr)}",
+        f"friction    μ = {plus_minus(results.friction.value, results.friction.stderr)}{law}",
+    ]
+
+
+def _simulated(
+    results: Results, unit: Unit, simulations: Mapping[str, SimulationScore]
+) -> Iterator[tuple[str, list[str]]]:
+    """Say of models how far their simulations are off, and how far each stone at the end."""
+    for models, score in _alike(simulations):
+        off = f"— ({score.note or 'nothing to compare'})"
+        if score.rmse is not None:
+            off = f"{unit.little(score.rmse)} RMS error"
+        # Only a shot that was fitted as a whole begins with what fits it.
+        how = "" if results.joint_estimate is None else ", as fitted"
+        yield f"{models}{how}: {off}", _each("at the end", score.rest_error, score.rest_sd, unit)
 
 
 def _alike(
@@ -221,20 +279,22 @@ def _alike(
 def _each(
     when: str, errors: Mapping[str, float | None], stated: Mapping[str, float | None], unit: Unit
 ) -> list[str]:
-    """By how much each stone's place was off, and by how much it may be, a few stones a line."""
+    """Return the errors of the stones' places with their uncertainties, a few stones a line."""
     texts = [
         f"{stone} {unit.little(error, sd)} (± {unit.little(sd, error)})"
         for stone, error in errors.items()
         if error is not None and (sd := stated.get(stone)) is not None
     ]
+    width = max(15, len(when))
     rows = [", ".join(texts[k : k + ABREAST]) for k in range(0, len(texts), ABREAST)]
     return [
-        f"{'':12s}{'' if k else when:15s} {row}{',' if k < len(rows) - 1 else ''}"
+        f"{'':12s}{'' if k else when:{width}s} {row}{',' if k < len(rows) - 1 else ''}"
         for k, row in enumerate(rows)
     ]
 
 
-def _shot_stone(results: Results, tracks: pd.DataFrame, house: House, unit: Unit) -> str:
+def shot_stone_text(results: Results, tracks: pd.DataFrame, house: House, unit: Unit) -> str:
+    """Name the shot stone and its distance from the tee, or say why it is not known."""
     rest = rest_table(tracks, results.collisions, house, results.radius)
     name, why = shot_stone(rest)
     if name is None:

@@ -91,7 +91,7 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
         outcomes,
         {stone.name: (stone.x, stone.y) for stone in start.shot.stones},
         odds["thrown"],
-        fill(", ".join([thrown, *told(odds["changes"])]), WIDEST),
+        fill(", ".join([thrown, *described(odds["changes"])]), WIDEST),
         start.shot.radius,
         house=start.house,
         play=_play(start),
@@ -99,7 +99,7 @@ def write_odds(folder: Path, start: Start, outcomes: pd.DataFrame, odds: Mapping
     figure.savefig(folder / "spread.png", dpi=PNG_DPI)
 
 
-def told(changes: Mapping[str, Any]) -> list[str]:
+def described(changes: Mapping[str, Any]) -> list[str]:
     """Say in a few words each what was changed of a shot; `changes` as in ``whatif.json``."""
     signs = {"restitution": ("e", ""), "friction": ("μ", ""), "speed": ("speed", " m/s"),
              "spin": ("spin", " rad/s")}  # fmt: skip
@@ -194,7 +194,7 @@ def spread_figure(
         figure.suptitle(plain_text(title), x=0.01, ha="left", fontsize=10, fontweight="bold")
         handles = _of_thrown(plain_text(thrown), len(ends), throws, gone[thrown])
         if _shows(low, high, np.array([*lying.values()]).reshape(-1, 2)):
-            handles.append(_ring(GREY, "as it lay before"))
+            handles.append(_ring(GREY, "before the shot"))
         handles += [
             _dots(colours[name], f"{plain_text(name)} where hit{_gone(gone[name])}")
             for name, struck in places.items()

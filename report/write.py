@@ -42,16 +42,14 @@ def write_run(stage: Path, run: Run, progress: Progress = no_progress) -> None:
     progress : callable
         Called as the work goes on.
     """
-    from curlshot.data.coach_units import UNITS
     from curlshot.data.tracks import write_table, write_tracks
     from curlshot.report.command_line import command_of
     from curlshot.report.page import write_report
     from curlshot.report.provenance import Provenance, sources
-    from curlshot.report.tables import residual_table
 
     measured, config = run.measurement, run.config
     results = replace(run.results, warnings=tuple(map(as_options, run.results.warnings)))
-    assert measured is not None, "a run that was loaded has its files already"
+    assert measured is not None, "a loaded run has its files already"
     write_tracks(run.tracks, stage / "tracks.csv", measured.table)
     write_table(run.simulations, stage / "simulation.csv")
     write_estimates(stage, run)
@@ -78,18 +76,16 @@ def write_run(stage: Path, run: Run, progress: Progress = no_progress) -> None:
         stage,
         results=results,
         tracks=run.tracks,
-        simulations={str(m): table for m, table in run.simulations.groupby("model")},
+        simulations=run.simulated,
         cameras=run.cameras,
         clip_name=measured.files[0].name,
         overlay=overlay,
         clip_start=clip_start,
         house=run.house,
-        residuals=residual_table(
-            measured.detections, run.tracks, results.collisions, results.radius
-        ),
+        residuals=run.residuals,
         posterior=run.posterior,
         ensemble=run.ensemble,
-        unit=UNITS[config.report.units],
+        unit=run.unit,
         provenance=Provenance(VERSION, command_of(measured.files, config), sources(measured.files)),
     )
     progress("report", 1, 1)

@@ -47,6 +47,18 @@ def run_each(
         By the names of their folders.
     failed : dict of str to CurlshotError
         Why the others could not be used.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> stones = (curlshot.StoneStart("A", 0.5, 1.0), curlshot.StoneStart("B", 0.0, 0.0))
+    >>> table = curlshot.simulate(curlshot.Shot(stones)).sample([0.0, 0.1, 0.2, 0.3])
+    >>> table.to_csv("still.csv")
+    >>> done, failed = curlshot.run_each(["still.csv", "gone.mp4"], "season", overlay=False)
+    >>> list(done), list(failed)
+    (['still'], ['gone'])
+    >>> print(failed["gone"])
+    gone.mp4: no such file
     """
     config = config.replace(**settings)
     folder = check_folder(out)

@@ -113,7 +113,7 @@ def _outcome(end: Connection, process: SpawnProcess) -> Any:
         process.join()
         if process.exitcode == -_KILLED:
             raise MemoryError from None
-        raise RuntimeError("a process ended before its work was done") from None
+        raise RuntimeError("a process ended before its work was complete") from None
     finally:
         end.close()
     process.join()

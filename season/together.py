@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from curlshot.data.files import check_folder, staged
+from curlshot.data.run_folders import find_results, read_runs
 from curlshot.data.version import VERSION
+from curlshot.outcome import Run
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,9 +19,9 @@ if TYPE_CHECKING:
     from curlshot.physics.statistics.pool import Pooled
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Season:
-    """What many shots show together.
+    """What many shots show together; it prints a line per shot, then e and μ of all.
 
     Attributes
     ----------
@@ -31,6 +33,17 @@ class Season:
         ``restitution`` and ``friction``; see `curlshot.physics.statistics.pool.Pooled`.
     left_out : dict of str to str
         Shots that do not count, and why.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> stones = (curlshot.StoneStart("A", 0.5, 1.0), curlshot.StoneStart("B", 0.0, 0.0))
+    >>> table = curlshot.simulate(curlshot.Shot(stones)).sample([0.0, 0.1, 0.2, 0.3])
+    >>> table.to_csv("still.csv")
+    >>> run = curlshot.run("still.csv")
+    >>> season = curlshot.combine({"first": run})
+    >>> season.shots["shot"].tolist(), season.means["friction"].shots
+    (['first'], 0)
     """
 
     shots: pd.DataFrame
@@ -38,11 +51,20 @@ class Season:
     means: dict[str, Pooled]
     left_out: dict[str, str]
 
+    def summary(self) -> str:
+        """Return what the command prints: a line per shot, then e and μ of all together."""
+        from curlshot.report.summary import season_text
 
-def season(
-    runs: Mapping[str, Results],
+        lines = season_text(self.shots, self.means)
+        return "\n".join([*lines, *(f"{name}   {why}" for name, why in self.left_out.items())])
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+
+def combine(
+    runs: str | Path | Sequence[str | Path] | Mapping[str, Run | Results],
     out: str | Path | None = None,
-    folders: Mapping[str, Path] | None = None,
     left_out: Mapping[str, str] | None = None,
 ) -> Season:
     """Put many shots side by side, and combine their e and μ.
@@ -52,31 +74,54 @@ def season(
 
     Parameters
     ----------
-    runs : mapping of str to Results
-        The shots by name.
+    runs : str or Path, sequence of them, or mapping of str to Run or Results
+        Folders of runs, or folders of such folders; or the runs by name, as `run_each` has them.
     out : str or Path, optional
         Folder for the page, the tables and the figure; nothing is written without it.
-    folders : mapping of str to Path, optional
-        Where the reports of the shots are, for links from the page.
     left_out : mapping of str to str, optional
         Shots that are not among them, and why, for the page to list.
 
     Returns
     -------
     Season
+
+    Raises
+    ------
+    curlshot.data.errors.InputError
+        Where there is no run, or `out` cannot be written.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import curlshot
+    >>> stones = (curlshot.StoneStart("A", 0.5, 1.0), curlshot.StoneStart("B", 0.0, 0.0))
+    >>> table = curlshot.simulate(curlshot.Shot(stones)).sample([0.0, 0.1, 0.2, 0.3])
+    >>> table.to_csv("still.csv")
+    >>> run = curlshot.run("still.csv")
+    >>> measured = [curlshot.Estimate(0.82, 0.02), curlshot.Estimate(0.85, 0.01)]
+    >>> one, two = (replace(run.results, restitution=e, glides=(0,)) for e in measured)
+    >>> e = curlshot.combine({"one": one, "two": two}).means["restitution"]
+    >>> f"{e.value:.3f} of {e.shots} shots"
+    '0.838 of 2 shots'
     """
     from curlshot.physics.statistics.season import hits_table, pooled, repeated, shots_table
 
     folder = None if out is None else check_folder(out)
-    again = repeated(runs)
+    if isinstance(runs, Mapping):
+        shots = {name: one.results if isinstance(one, Run) else one for name, one in runs.items()}
+        places = {n: one.out for n, one in runs.items() if isinstance(one, Run) and one.out}
+    else:
+        files = find_results(runs)
+        shots, places = read_runs(files), {name: file.parent for name, file in files.items()}
+    again = repeated(shots)
     unused = {name: f"the same shot as {one}: counted once" for name, one in again.items()}
     unused |= left_out or {}
-    runs = {name: run for name, run in runs.items() if name not in again}
-    shots = shots_table(runs)
-    together = Season(shots, hits_table(runs), pooled(shots), unused)
+    shots = {name: one for name, one in shots.items() if name not in again}
+    table = shots_table(shots)
+    together = Season(table, hits_table(shots), pooled(table), unused)
     if folder is not None:
-        pages = {name: path / "report.html" for name, path in (folders or {}).items()}
-        _write(together, folder, {name: page for name, page in pages.items() if name in runs})
+        pages = {name: path / "report.html" for name, path in places.items() if name in shots}
+        _write(together, folder, pages)
     return together
 
 

@@ -169,6 +169,7 @@ def render_clip(
     crf: int = 21,
     supersample: int = 1,
     draw: Callable[..., Frames] = pictures,
+    fields: bool = False,
 ) -> Truth:
     """Render a clip to `path` (MP4, H.264) and return its truth.
 
@@ -190,10 +191,12 @@ def render_clip(
         Render so many times larger: for tilts beyond some 30°.
     draw : callable
         The renderer: `pictures` or one of its form.
+    fields : bool
+        Encode the frames as interlaced ones: see `tests.synthetic.conversion.interlaced`.
     """
     moments = frame_times(fps, duration) if times is None else on_ticks(times)
     frames = draw(scene, camera, moments, shutter=shutter, supersample=supersample)
-    write_video(path, frames, fps=fps, crf=crf)
+    write_video(path, frames, fps=fps, crf=crf, fields=fields)
     return describe(scene, camera, moments, fps=fps)
 
 
@@ -208,13 +211,14 @@ def cached_clip(
     crf: int = 21,
     supersample: int = 1,
     draw: Callable[..., Frames] = pictures,
+    fields: bool = False,
 ) -> tuple[Path, Truth]:
     """As `render_clip`, but rendered once per machine: kept in the folder for temporary files.
 
     The key is made of the parameters and of the renderer's own source.
     """
     moments = frame_times(fps, duration) if times is None else on_ticks(times)
-    how = (shutter, crf, supersample, draw.__name__)
+    how = (shutter, crf, supersample, draw.__name__, fields)
     what = (scene, camera, fps, moments.tolist(), how, _source())
     key = hashlib.sha256(repr(what).encode()).hexdigest()[:24]
     folder = Path(tempfile.gettempdir()) / "curlshot-clips"
@@ -225,7 +229,7 @@ def cached_clip(
             fresh = Path(scratch) / clip.name
             truth = render_clip(
                 scene, camera, fresh, fps=fps, times=moments, shutter=shutter, crf=crf,
-                supersample=supersample, draw=draw,
+                supersample=supersample, draw=draw, fields=fields,
             )  # fmt: skip
             fresh.replace(clip)
         return clip, truth

@@ -19,7 +19,12 @@ def on_ticks(times: ArrayLike) -> NDArray[np.float64]:
 
 
 def write_video(
-    path: Path, frames: Iterable[tuple[float, NDArray[np.uint8]]], *, fps: float, crf: int = 21
+    path: Path,
+    frames: Iterable[tuple[float, NDArray[np.uint8]]],
+    *,
+    fps: float,
+    crf: int = 21,
+    fields: bool = False,
 ) -> None:
     """Write (time in s, BGR picture) pairs as an MP4 file of H.264.
 
@@ -33,12 +38,16 @@ def write_video(
         Nominal rate, 1/s; the times are what counts.
     crf : int
         Compression, 0 (none) to 51.
+    fields : bool
+        Encode pictures as interlaced ones, whose lower lines were taken first.
     """
     # The index first: then a copy that breaks off can be read as far as it goes.
     with av.open(str(path), "w", options={"movflags": "+faststart"}) as container:
         stream = container.add_stream("libx264", rate=Fraction(fps).limit_denominator(1001))
         stream.pix_fmt = "yuv420p"
         stream.options = {"crf": str(crf), "preset": "veryfast", "threads": "1"}
+        if fields:
+            stream.options = {**stream.options, "x264-params": "bff=1"}
         stream.codec_context.time_base = TICK
         for t, picture in frames:
             if not stream.codec_context.is_open:

@@ -20,13 +20,24 @@ MAY_IMPORT = {
     "report": {"data", "config", "physics", "vision", "outcome"},
     "outcome": {"data", "config", "physics", "report"},
     "pipeline": {"data", "config", "physics", "vision", "outcome"},
+    "simulated": {"data", "config", "physics", "report", "outcome"},
     "season": {"data", "config", "physics", "report", "outcome", "pipeline"},
-    "cli": {"data", "config", "physics", "vision", "report", "outcome", "pipeline", "season"},
+    "cli": {
+        "data",
+        "config",
+        "physics",
+        "vision",
+        "report",
+        "outcome",
+        "pipeline",
+        "simulated",
+        "season",
+    },
 }
 """The rooms that each room may import. `outcome` and `report` are one floor: a run draws itself."""
 ORDER = {
     "vision": "video optics sheet camera_path spin detection association track measure",
-    "physics": "registry impact ice curl filter statistics local_fit kalman simulator whole_shot"
+    "physics": "registry impact ice curl filter statistics local_fit kalman simulator shot_fit"
     " estimate posterior prediction steps cautions",
 }
 """Folders and modules of a room: each may import itself and those before it."""

@@ -84,7 +84,7 @@ def track_camera(
         cameras, warnings = followed.cameras, followed.warnings
     cameras = video.retime(cameras)
     if not cameras:
-        raise InputError(f"{file}: none of the frames that are used can be read")
+        raise InputError(f"{file}: none of the selected frames can be read")
     check_size(config.stones.radius, cameras[0])
     return CameraTrack(cameras, disc, house, warnings)
 
@@ -122,7 +122,7 @@ def check_size(radius: float, camera: Camera) -> None:
     pixels = radius * float(camera.scale_at((0.0, 0.0)))
     if not 1.5 < pixels < max(camera.size):
         raise InputError(
-            f"discs of radius {radius:g} m would have {pixels:.2g} px in the picture; check"
+            f"discs of radius {radius:g} m would have {pixels:.2g} px in the frame; verify"
             " `radius`, and `stick` or `camera` if given"
         )
 
@@ -144,9 +144,9 @@ def disc_of(config: Config) -> Stone:
     least, most = STONE_RADII
     if not least <= config.stones.radius <= most:
         raise InputError(
-            f"radius {config.stones.radius:g} m: in a house stones are looked for, which have"
-            f" {STONE.radius:g} m ({least:g} to {most:g} are taken); for other discs give the scale"
-            " with `stick` or `camera`"
+            f"radius {config.stones.radius:g} m: in a house the discs must be stones,"
+            f" {STONE.radius:g} m ({least:g} to {most:g} are accepted); for other discs give the"
+            " scale with `stick` or `camera`"
         )
     return replace(STONE, radius=config.stones.radius)
 

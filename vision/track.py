@@ -253,8 +253,8 @@ def _without_colour(appearance: Appearance | None) -> tuple[str, ...]:
     if len(caps) != 1 or not caps[0].grey:
         return ()
     return (
-        f"only caps without colour are made out, {caps[0].name}; stones whose caps are about as"
-        " light as their granite would be missed",
+        f"only caps without colour are detected, {caps[0].name}; stones with caps about as light"
+        " as their granite would be missed",
     )
 
 

@@ -25,6 +25,12 @@ class FCV1Curl:
         Loss of spin times speed, m rad/s³.
     slow : float
         Speed below which the loss of spin no longer grows, m/s.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> round(float(curlshot.FCV1Curl().turn_rate(1.0)), 4)
+    0.0082
     """
 
     turn: float = parameter(0.00820, 0.0, 1.0)

@@ -10,7 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 @dataclass(frozen=True)
 class NoCurl:
-    """Straight paths; the spin is kept until the stone stops."""
+    """Straight paths; the spin is kept until the stone stops.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> float(curlshot.NoCurl().turn_rate(1.0))
+    0.0
+    """
 
     name = "none"
 

@@ -19,6 +19,12 @@ class Constant:
     ----------
     friction : float
         Coefficient μ; 0.0109 is what the study of the 2018 Olympic final found.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> round(float(curlshot.Constant(0.01).deceleration(1.0)), 4)
+    0.0981
     """
 
     friction: float = parameter(0.0109, 1e-4, 1.0)

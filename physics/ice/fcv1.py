@@ -24,6 +24,12 @@ class FCV1:
         Free fall, m/s². The simulator has 9.80665, but its steps of 1 ms in single precision
         let a stone stop up to 3 mm sooner in 62 m; with 9.807 the exact motion ends within
         1.1 mm of where it does.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> round(float(curlshot.FCV1().deceleration(1.0)), 4)
+    0.0799
     """
 
     a: float = parameter(0.00200985, 0.0, 1.0)

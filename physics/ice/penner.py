@@ -21,6 +21,12 @@ class Penner:
     ----------
     friction : float
         Coefficient at 1 m/s.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> round(float(curlshot.Penner(0.008).deceleration(4.0)), 4)
+    0.0392
     """
 
     friction: float = parameter(0.008, 1e-4, 1.0)

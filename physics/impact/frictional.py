@@ -28,6 +28,12 @@ class Frictional:
         Coefficient of friction between the stones, μ_s >= 0.
     inertia : float
         k in the moment of inertia k m R².
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.Frictional(restitution=0.83).inertia
+    0.5
     """
 
     restitution: float = parameter(1.0, 0.0, 1.0)

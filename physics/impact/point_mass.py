@@ -18,6 +18,12 @@ class PointMass:
     ----------
     restitution : float
         Coefficient e, 0..1.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.PointMass(restitution=0.83).name
+    'point-mass'
     """
 
     restitution: float = parameter(1.0, 0.0, 1.0)

@@ -22,6 +22,12 @@ class RigidBody:
     ----------
     restitution : float
         Coefficient e, 0..1.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.RigidBody(restitution=0.83).needs_spin_after
+    True
     """
 
     restitution: float = parameter(1.0, 0.0, 1.0)

@@ -6,7 +6,7 @@ In the order of the work:
 path stops being one glide, and `segments` cuts it there and at its hits into pieces. `candidates`
 finds where two paths come near enough for a hit; of very many `candidate_pruning` keeps some. `fit`
 fits all pieces and the times of all meetings at once, held together by `constraints`; its result is
-a `shot_fit.ShotFit`. `contacts` strikes off meetings until all that are left are hits.
+a `solution.LocalFit`. `hit_detection` strikes off meetings until all that are left are hits.
 
 From a fit with the hits known, `glides` measures the friction, `hits` the restitution, and `spins`
 the spins and the friction between stones, with the `noise` of the detections as the shot shows it;

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import Trace
 
 MANY = 24

@@ -11,7 +11,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from curlshot.physics.local_fit.breaks import FEWEST, breaks
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import Trace
 
 Floats = NDArray[np.float64]

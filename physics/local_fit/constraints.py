@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from curlshot.physics.filter.slowing import at_speed, motion_state
-from curlshot.physics.local_fit.shot_fit import POWER, Deceleration, Meeting, unknowns_of
+from curlshot.physics.local_fit.solution import POWER, Deceleration, Meeting, unknowns_of
 
 Floats = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ def contact_constraints(
     Parameters
     ----------
     theta : (n,) array
-        All unknowns, as in `curlshot.physics.local_fit.shot_fit.ShotFit`.
+        All unknowns, as in `curlshot.physics.local_fit.solution.LocalFit`.
     at : int
         Which of them is the meeting's time.
     origins : array

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.data.results import Collision, Estimate, Method, Told
+from curlshot.data.results import Estimate, Hit, Method, NotedEstimate
 from curlshot.data.sheet import GRAVITY
 from curlshot.physics.local_fit.traces import Trace
 
@@ -29,7 +29,7 @@ STOPPED = 0.05
 
 
 def by_finite_differences(
-    known: Mapping[str, Trace], collisions: Sequence[Collision], ends: Mapping[str, float]
+    known: Mapping[str, Trace], collisions: Sequence[Hit], ends: Mapping[str, float]
 ) -> Method:
     """Restitution of each hit, their mean, and the mean friction of stones that come to rest.
 
@@ -37,7 +37,7 @@ def by_finite_differences(
     ----------
     known : mapping
         Stone to its detections.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         The hits in order of time; only their times and stones are used.
     ends : mapping
         Stone to the time at which its last glide ends in rest, s, of those that are seen to.
@@ -51,16 +51,16 @@ def by_finite_differences(
     return Method(
         _mean(hits),
         _mean(slowed),
-        Told(note="friction between the stones is not told so"),
+        NotedEstimate(note="finite differences do not give the friction between the stones"),
         hits=tuple(hits),
-        note=f"mean finite differences over at most {WINDOW:g} s on either side of a hit; errors"
-        " are of noise alone",
+        note=(
+            f"mean finite differences over at most {WINDOW:g} s on either side of a hit; errors"
+            " from noise alone"
+        ),
     )
 
 
-def _restitution(
-    known: Mapping[str, Trace], hit: Collision, others: Sequence[Collision]
-) -> Estimate:
+def _restitution(known: Mapping[str, Trace], hit: Hit, others: Sequence[Hit]) -> Estimate:
     """Ratio of the normal speeds after and before a hit."""
     places, sides = [], []
     for stone in hit.stones:

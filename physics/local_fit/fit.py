@@ -18,14 +18,14 @@ from curlshot.physics.filter.slowing import LEAST, MOST, course, power_prior, st
 from curlshot.physics.local_fit.breaks import FEWEST
 from curlshot.physics.local_fit.constraints import acceleration_prior, contact_constraints
 from curlshot.physics.local_fit.segments import Piece
-from curlshot.physics.local_fit.shot_fit import (
+from curlshot.physics.local_fit.solution import (
     ACCELERATION,
     PLACE,
     POWER,
     VELOCITY,
     Deceleration,
+    LocalFit,
     Meeting,
-    ShotFit,
     times_of,
     unknowns_of,
 )
@@ -56,7 +56,7 @@ def fit_shot(
     deceleration: Deceleration | None = None,
     momentum: bool = True,
     still: Sequence[Floats] = (),
-) -> ShotFit:
+) -> LocalFit:
     """Fit all pieces and the times of all meetings at once.
 
     Parameters
@@ -132,7 +132,7 @@ class _Solver:
         order = np.argsort(unknowns, kind="stable")
         return np.split(order, np.flatnonzero(np.diff(unknowns[order])) + 1)
 
-    def solve(self) -> ShotFit:
+    def solve(self) -> LocalFit:
         states, powers = slice(self.times.start), slice(self.times.stop, None)
         settled = False
         for done in range(STEPS):
@@ -154,7 +154,7 @@ class _Solver:
             self.inflation = self._inflation(float(np.sum(cov * data)))
             if settled:
                 break
-        return ShotFit(
+        return LocalFit(
             tuple(self.pieces),
             self.meetings,
             self.theta,

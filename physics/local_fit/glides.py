@@ -22,7 +22,7 @@ from curlshot.physics.filter.slowing import (
     speed_left,
 )
 from curlshot.physics.local_fit.free_glides import are_free, is_pushed
-from curlshot.physics.local_fit.shot_fit import ACCELERATION, POWER, Deceleration, ShotFit
+from curlshot.physics.local_fit.solution import ACCELERATION, POWER, Deceleration, LocalFit
 from curlshot.physics.local_fit.traces import PLACE_REACH, Trace
 from curlshot.physics.statistics.random_effects import random_effects, weighted_mean
 
@@ -89,7 +89,7 @@ class Glides:
 
 
 def measure_glides(
-    fit: ShotFit,
+    fit: LocalFit,
     known: Mapping[str, Trace],
     radius: float,
     changes: Mapping[str, Sequence[float]] = MappingProxyType({}),
@@ -142,7 +142,7 @@ class _MeasuredGlide:
 
 
 def _long_glides(
-    fit: ShotFit, known: Mapping[str, Trace], radius: float
+    fit: LocalFit, known: Mapping[str, Trace], radius: float
 ) -> Iterator[_MeasuredGlide]:
     """Measure each glide that is long enough."""
     for i, piece in enumerate(fit.pieces):
@@ -191,7 +191,7 @@ class _Slowed:
         return values, np.outer(scale, scale) * self.cov + np.outer(unsure, unsure)
 
 
-def _slowed(fit: ShotFit, each: Sequence[_MeasuredGlide]) -> _Slowed:
+def _slowed(fit: LocalFit, each: Sequence[_MeasuredGlide]) -> _Slowed:
     """Put the decelerations of all glides together."""
     rows = np.array([one.by_fit for one in each]).reshape(len(each), len(fit.theta))
     cov = rows @ fit.cov @ rows.T + np.diag([one.bent**2 for one in each])
@@ -199,14 +199,14 @@ def _slowed(fit: ShotFit, each: Sequence[_MeasuredGlide]) -> _Slowed:
 
 
 def _told(
-    fit: ShotFit, each: Sequence[_MeasuredGlide], law: Deceleration
+    fit: LocalFit, each: Sequence[_MeasuredGlide], law: Deceleration
 ) -> tuple[_Slowed, _Shape]:
     """Put glides together, and tell from them how the friction falls."""
     slowed = _slowed(fit, each)
     return slowed, _shape(fit, each, slowed, law)
 
 
-def _acceleration(fit: ShotFit, rank: int, t: float, way: Floats) -> tuple[float, Floats]:
+def _acceleration(fit: LocalFit, rank: int, t: float, way: Floats) -> tuple[float, Floats]:
     """Acceleration of a piece in a direction, at a time, and its derivatives by `fit.theta`."""
     own, x, power = fit.unknowns(rank), fit.state(rank), fit.power(rank)
     slower = -float(np.log(speed_left(x, t - fit.origins[rank], power)))
@@ -231,7 +231,7 @@ class _Shape:
 
 
 def _shape(
-    fit: ShotFit, each: Sequence[_MeasuredGlide], slowed: _Slowed, law: Deceleration
+    fit: LocalFit, each: Sequence[_MeasuredGlide], slowed: _Slowed, law: Deceleration
 ) -> _Shape:
     """Tell how a friction falls, from each glide's course and from how glides differ.
 

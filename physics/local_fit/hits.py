@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from curlshot.data.results import Collision, Estimate, MeasuredState
+from curlshot.data.results import Estimate, Hit, MeasuredState
 from curlshot.physics.local_fit.noise import Noise, noises
-from curlshot.physics.local_fit.shot_fit import ContactState, ShotFit
+from curlshot.physics.local_fit.solution import ContactState, LocalFit
 from curlshot.physics.local_fit.spins import spins_at, stone_friction
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.physics.statistics.random_effects import random_effects
@@ -33,17 +33,17 @@ where one of them was not told, or not as it was."""
 
 
 def measure_hits(
-    joint: ShotFit,
-    apart: ShotFit,
+    joint: LocalFit,
+    apart: LocalFit,
     known: Mapping[str, Trace],
     radius: float,
     masses: Mapping[str, float],
-) -> tuple[tuple[Collision, ...], Estimate]:
+) -> tuple[tuple[Hit, ...], Estimate]:
     """Measure each hit of a fit, and the restitution of all together.
 
     Parameters
     ----------
-    joint, apart : ShotFit
+    joint, apart : LocalFit
         The fit, with and without the momentum of each pair held.
     known : mapping
         Stone to its detections.
@@ -54,7 +54,7 @@ def measure_hits(
 
     Returns
     -------
-    collisions : tuple of Collision
+    collisions : tuple of Hit
         In the order of the fit's meetings.
     restitution : Estimate
         Pooled over the hits that tell it.
@@ -83,7 +83,7 @@ def measure_hits(
 
 
 def _collision(
-    joint: ShotFit,
+    joint: LocalFit,
     k: int,
     known: Mapping[str, Trace],
     noise: Mapping[str, Noise],
@@ -92,7 +92,7 @@ def _collision(
     restitution: Estimate,
     momentum: Estimate,
     note: str | None,
-) -> Collision:
+) -> Hit:
     state = joint.contact_state(k)
     spins = spins_at(joint, k, known, noise, mass)
     before, after = _states(joint, k, known, spins)
@@ -101,7 +101,7 @@ def _collision(
     if note is None:
         rubbing, why = stone_friction(joint, k, spins, radius)
     nx, ny = (float(value) for value in state.normal)
-    return Collision(
+    return Hit(
         t=state.t,
         stderr_t=joint.stderr_time(k),
         stones=joint.meetings[k].stones,
@@ -121,7 +121,7 @@ def _collision(
 
 
 def _states(
-    fit: ShotFit, k: int, known: Mapping[str, Trace], spins: Sequence[tuple[Estimate, Estimate]]
+    fit: LocalFit, k: int, known: Mapping[str, Trace], spins: Sequence[tuple[Estimate, Estimate]]
 ) -> tuple[dict[str, MeasuredState], dict[str, MeasuredState]]:
     """States of the two stones before and after hit k, by stone, with their errors."""
 
@@ -159,7 +159,7 @@ def _restitutions(states: Sequence[ContactState]) -> Floats:
     return np.array(out)
 
 
-def _scatter(fit: ShotFit, values: Floats, cov: Floats) -> Floats:
+def _scatter(fit: LocalFit, values: Floats, cov: Floats) -> Floats:
     """By how much restitutions of hits in quick succession differ beyond their errors, per hit.
 
     A hit that was not told changes what momentum says of those beside it, some by more and some by
@@ -172,7 +172,7 @@ def _scatter(fit: ShotFit, values: Floats, cov: Floats) -> Floats:
     return out
 
 
-def _successions(fit: ShotFit) -> list[list[int]]:
+def _successions(fit: LocalFit) -> list[list[int]]:
     """Ranks of the hits by groups: those between which a stone is hardly seen are in one."""
     group = list(range(len(fit.meetings)))
     for piece in fit.pieces:
@@ -183,7 +183,7 @@ def _successions(fit: ShotFit) -> list[list[int]]:
 
 
 def _why_not(
-    fit: ShotFit,
+    fit: LocalFit,
     k: int,
     known: Mapping[str, Trace],
     restitution: Estimate,
@@ -196,13 +196,13 @@ def _why_not(
     )
     if scatter > UNLIKE:
         return (
-            f"restitution unknown: hits in quick succession would have ones that differ by"
-            f" {scatter:.2g}, as where a hit between them was not told"
+            "restitution unknown: the values of hits in quick succession would differ by"
+            f" {scatter:.2g}, as if a hit between them was missed"
         )
     if value > 1 + 2 * stderr:
         return (
             f"restitution unknown: {value:.3f} ± {stderr:.3f} is more than 1, which no hit gives:"
-            " times or tracks are off, or something pushed a stone"
+            " times or tracks are wrong, or something pushed a stone"
         )
     lost = _lost(momentum)
     if lost or stderr < WORST:
@@ -213,7 +213,7 @@ def _why_not(
             seen = len(piece.samples)
             if seen < SEEN:
                 between = piece.opens is not None and piece.closes is not None
-                often = ("not seen", "seen once", f"seen {seen} times")[min(seen, 2)]
+                often = ("not seen", "measured once", f"measured {seen} times")[min(seen, 2)]
                 where = "between two hits" if between else f"{when} it"
                 return f"restitution unknown: {stone} is {often} {where}"
     return f"restitution unknown: its standard error would be {stderr:.2g}"
@@ -225,10 +225,10 @@ def _lost(momentum: Estimate) -> str | None:
     if change is None or stderr is None or change < max(LOST, 3 * stderr):
         return None
     off = f"{100 * change:.0f} % ± {100 * stderr:.0f} %"
-    return f"restitution unknown: momentum changes by {off}, something else touched the stones"
+    return f"restitution unknown: momentum changes by {off}; something else touched the stones"
 
 
-def _momentum(fit: ShotFit, k: int, mass: Floats) -> Estimate:
+def _momentum(fit: LocalFit, k: int, mass: Floats) -> Estimate:
     """Relative change of momentum at hit k where it is not held, and its standard error."""
 
     def change(states: Sequence[ContactState]) -> Floats:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from curlshot.data.tracks import Columns
 from curlshot.physics.filter.stretch import JUMP_SD
-from curlshot.physics.local_fit.contacts import Contact
+from curlshot.physics.local_fit.hit_detection import HitCandidate
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ e = 0.84. Each has as much of it as the other one's mass has of both."""
 
 def widen_last(
     tracks: Mapping[str, Columns],
-    hits: Sequence[Contact],
+    hits: Sequence[HitCandidate],
     radius: float,
     masses: Mapping[str, float] | None = None,
     duplicates: Mapping[str, int] = MappingProxyType({}),
@@ -45,7 +45,7 @@ def widen_last(
     ----------
     tracks : mapping of str to Columns
         Stone to its rows (`curlshot.data.tracks.TRACK_COLUMNS`); standard deviations are changed.
-    hits : sequence of Contact
+    hits : sequence of HitCandidate
         Those that are told.
     radius : float
         Of the discs, m.

@@ -12,15 +12,15 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from curlshot.data.results import Collision, Estimate, Friction, Glide
+from curlshot.data.results import Estimate, Friction, Glide, Hit
 from curlshot.data.sheet import GRAVITY
-from curlshot.physics.local_fit.contacts import Contact, cut_all
 from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.glides import WORST, Glides, free, measure_glides
+from curlshot.physics.local_fit.hit_detection import HitCandidate, cut_all
 from curlshot.physics.local_fit.hits import measure_hits, pooled
 from curlshot.physics.local_fit.off_centre import centred
 from curlshot.physics.local_fit.segments import Piece
-from curlshot.physics.local_fit.shot_fit import ContactState, Deceleration, Meeting, ShotFit
+from curlshot.physics.local_fit.solution import ContactState, Deceleration, LocalFit, Meeting
 from curlshot.physics.local_fit.traces import Trace, traces
 from curlshot.physics.local_fit.untold import untold_hits
 from curlshot.physics.statistics.residuals import huber_weights
@@ -44,7 +44,7 @@ class Local:
         Pooled over all hits that tell it.
     friction : Friction
         Pooled over all glides.
-    collisions : tuple of Collision
+    collisions : tuple of Hit
         In order of time.
     glides : tuple of Glide
         In order of stone and time.
@@ -52,7 +52,7 @@ class Local:
         Why the friction could not be told, or what is odd about it.
     warnings : tuple of str
         What else could not be told and why; what does not agree.
-    fit : ShotFit or None
+    fit : LocalFit or None
         Of the paths; None where no stone moves.
     known : mapping
         Stone to its detections.
@@ -60,17 +60,17 @@ class Local:
 
     restitution: Estimate = field(default_factory=Estimate)
     friction: Friction = field(default_factory=Friction)
-    collisions: tuple[Collision, ...] = ()
+    collisions: tuple[Hit, ...] = ()
     glides: tuple[Glide, ...] = ()
     friction_doubt: str | None = None
     warnings: tuple[str, ...] = ()
-    fit: ShotFit | None = None
+    fit: LocalFit | None = None
     known: Mapping[str, Trace] = field(default_factory=dict)
 
 
 def estimate_locally(
     detections: pd.DataFrame,
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
@@ -85,7 +85,7 @@ def estimate_locally(
 
 def estimate_from_traces(
     known: Mapping[str, Trace],
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     *,
     radius: float,
     masses: Mapping[str, float] | None = None,
@@ -100,9 +100,11 @@ def estimate_from_traces(
     pieces = [piece for piece in pieces if not (piece.rest and _alone(piece))]
     untold = untold_hits(known, meetings, radius)
     if not pieces:
-        return Local(warnings=("no stone moves: neither restitution nor friction", *untold.said))
+        return Local(
+            warnings=("no stone moves: restitution and friction are not identifiable", *untold.said)
+        )
 
-    def fit(pieces: list[Piece], slowing: Deceleration, momentum: bool = True) -> ShotFit:
+    def fit(pieces: list[Piece], slowing: Deceleration, momentum: bool = True) -> LocalFit:
         return fit_shot(
             known, pieces, meetings, radius,
             masses=masses, still=still, deceleration=slowing, momentum=momentum,
@@ -112,7 +114,7 @@ def estimate_from_traces(
     friction, doubt = _checked(told)
     glides, prior = told.free, told.prior
     if not meetings:
-        unseen = ("restitution: no hit seen", *untold.said, *_pushes(told))
+        unseen = ("restitution: no hit detected", *untold.said, *_pushes(told))
         return Local(Estimate(), friction, (), glides, doubt, unseen, fit(pieces, prior), known)
     joint = fit(pieces, prior)
     apart = fit(pieces, prior, momentum=False)
@@ -127,25 +129,26 @@ def _checked(told: Glides) -> tuple[Friction, str | None]:
     friction, prior = told.friction, told.prior
     value, stderr = friction.value, friction.stderr
     if value is None or stderr is None:
-        return friction, "friction: no stone glides freely for long enough to tell it"
+        return friction, "friction: not identifiable, no stone glides freely for long enough"
     if value + 2 * stderr < 0:
         return Friction(), (
-            f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so these are no"
-            " free glides on level ice; not reported"
+            f"friction: the stones gain speed (μ = {value:.3f} ± {stderr:.3f}), so they do not"
+            " glide freely on level ice; not reported"
         )
     each = [glide.friction for glide in told.free if glide.friction is not None]
     if stderr > max(WORST, VAGUE * value):
         of = f" (of glides from {min(each):.3f} to {max(each):.3f})" if len(each) > 1 else ""
-        return Friction(), f"friction: {value:.3f} ± {stderr:.3f}{of} tells nothing; not reported"
-    if value < 0:
-        return friction, (
-            f"friction: {value:.4f} ± {stderr:.4f}: too little is seen to tell it from none"
+        return (
+            Friction(),
+            f"friction: {value:.3f} ± {stderr:.3f}{of} is too uncertain; not reported",
         )
+    if value < 0:
+        return friction, (f"friction: {value:.4f} ± {stderr:.4f}: not distinguishable from zero")
     uneven = max(UNEVEN, 0.3 * prior.mean)
     if prior.along > uneven and GRAVITY * (max(each) - min(each)) > uneven:
         return friction, (
-            f"friction differs from glide to glide ({min(each):.4f} to {max(each):.4f}):"
-            " it depends on speed or place, the value is a mean"
+            f"friction differs from glide to glide ({min(each):.4f} to {max(each):.4f}): it"
+            " depends on speed or place; the value is a mean"
         )
     return friction, None
 
@@ -155,20 +158,20 @@ def _pushes(told: Glides) -> Iterator[str]:
     for stone in dict.fromkeys(glide.stone for glide in told.pushed):
         own = [glide for glide in told.pushed if glide.stone == stone]
         yield (
-            f"{stone} is pushed, carried or led, as it seems, between {own[0].t0:.2f} and"
-            f" {own[-1].t1:.2f} s: what is no free glide tells no friction"
+            f"{stone} is apparently pushed or carried between {own[0].t0:.2f} and"
+            f" {own[-1].t1:.2f} s; this interval is not used for friction"
         )
 
 
-def _doubts(hit: Collision) -> list[str]:
+def _doubts(hit: Hit) -> list[str]:
     """Say what is missing or odd about a hit."""
     name = f"hit of {hit.stones[0]} and {hit.stones[1]} at {hit.t:.2f} s"
     out = [f"{name}: {hit.note}"] if hit.note else []
     residual, stderr = hit.momentum_residual, hit.stderr_momentum
     if hit.note is None and residual and stderr and residual > max(0.05, 3 * stderr):
         out.append(
-            f"{name}: momentum changes by {100 * residual:.0f} % ± {100 * stderr:.0f} %:"
-            " scale, masses or tracks are off"
+            f"{name}: momentum changes by {100 * residual:.0f} % ± {100 * stderr:.0f} %: scale,"
+            " masses or tracks are wrong"
         )
     return out
 
@@ -184,7 +187,7 @@ def _scatter(trace: Trace, piece: Piece) -> Floats:
     return out * huber_weights(out)
 
 
-def _distances(fit: ShotFit, radius: float) -> list[str]:
+def _distances(fit: LocalFit, radius: float) -> list[str]:
     """Say so where hits happen at another distance than two radii."""
 
     def ratios(states: Sequence[ContactState]) -> Floats:
@@ -197,6 +200,6 @@ def _distances(fit: ShotFit, radius: float) -> list[str]:
     if abs(mean.value - 1) < max(0.02, 2 * mean.stderr):
         return []
     return [
-        f"discs meet at {mean.value * 2 * radius:.4g} m where two radii are {2 * radius:.4g} m:"
-        " the scale or the radius is off"
+        f"discs touch at a distance of {mean.value * 2 * radius:.4g} m, but two radii are"
+        f" {2 * radius:.4g} m: the scale or the radius is wrong"
     ]

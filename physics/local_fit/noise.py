@@ -24,7 +24,7 @@ from curlshot.physics.filter.stretch import (
     SPIN_LOSS,
     SPIN_LOSS_SD,
 )
-from curlshot.physics.local_fit.shot_fit import ShotFit
+from curlshot.physics.local_fit.solution import LocalFit
 from curlshot.physics.local_fit.traces import Trace, level, local_residuals
 
 Floats = NDArray[np.float64]
@@ -107,14 +107,14 @@ class Run:
         return replace(self, samples=self.samples[first], t=t, off=off, each=each)
 
 
-def noises(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
+def noises(fit: LocalFit, known: Mapping[str, Trace]) -> dict[str, Noise]:
     """Estimate the noise of the detections of each stone.
 
     Their stated errors are taken for the whole; the scatter says how much of it is white.
 
     Parameters
     ----------
-    fit : ShotFit
+    fit : LocalFit
         Of all pieces.
     known : mapping
         Stone to its detections.
@@ -152,7 +152,7 @@ def _filled(stated: Floats) -> Floats:
     return np.where(np.isfinite(stated), stated, usual)
 
 
-def _places(fit: ShotFit, known: Mapping[str, Trace], axis: int) -> Iterator[Run]:
+def _places(fit: LocalFit, known: Mapping[str, Trace], axis: int) -> Iterator[Run]:
     """Places on one axis of each piece that moves against its fit."""
     for i, piece in enumerate(fit.pieces):
         trace, samples = known[piece.stone], piece.samples
@@ -163,7 +163,7 @@ def _places(fit: ShotFit, known: Mapping[str, Trace], axis: int) -> Iterator[Run
         yield Run(piece.stone, samples, trace.t[samples], off, 3.0)
 
 
-def _angles(fit: ShotFit, known: Mapping[str, Trace]) -> Iterator[Run]:
+def _angles(fit: LocalFit, known: Mapping[str, Trace]) -> Iterator[Run]:
     """Angles of each piece that moves against a steady loss of spin, as large as ice takes it."""
     for i, piece in enumerate(fit.pieces):
         trace = known[piece.stone]

@@ -17,16 +17,16 @@ from numpy.typing import NDArray
 
 from curlshot.physics.filter.stretch import PLACE_MEMORY
 from curlshot.physics.local_fit.breaks import ALIKE
-from curlshot.physics.local_fit.contacts import Contact
 from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.glides import free
+from curlshot.physics.local_fit.hit_detection import HitCandidate
 from curlshot.physics.local_fit.segments import Piece, cut
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.physics.statistics.residuals import huber_weights
 
 if TYPE_CHECKING:
-    from curlshot.data.results import Collision
+    from curlshot.data.results import Hit
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ REWEIGHTED = 3
 
 
 def centred(
-    known: Mapping[str, Trace], hits: Sequence[Meeting | Contact | Collision], radius: float
+    known: Mapping[str, Trace], hits: Sequence[Meeting | HitCandidate | Hit], radius: float
 ) -> dict[str, Trace]:
     """Put the detections of each stone over its centre, where it shows that they are beside it.
 
@@ -76,7 +76,7 @@ def centred(
     ----------
     known : mapping
         Stone to its detections.
-    hits : sequence of Meeting, Contact or Collision
+    hits : sequence of Meeting, HitCandidate or Hit
         The hits.
     radius : float
         Of the discs, m.

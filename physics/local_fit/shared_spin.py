@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from curlshot.data.sheet import STONE, curling_size
 from curlshot.data.tracks import Columns
 from curlshot.physics.filter.stretch import LOSS_SD, MEMORY, MOST_LOSS_SD
-from curlshot.physics.local_fit.contacts import Contact
+from curlshot.physics.local_fit.hit_detection import HitCandidate
 
 Floats = NDArray[np.float64]
 
@@ -125,7 +125,7 @@ def _best(t: Floats, sd: Floats, rows: NDArray[np.intp], time: float) -> int:
 
 def share_spins(
     tables: Mapping[str, Columns],
-    contacts: Sequence[Contact],
+    contacts: Sequence[HitCandidate],
     radius: float,
     masses: Mapping[str, float] | None = None,
     together: Mapping[str, Floats] = MappingProxyType({}),
@@ -138,7 +138,7 @@ def share_spins(
         Stone to its rows of `curlshot.data.tracks.TRACK_COLUMNS`; ``omega`` and ``sd_omega`` are
         changed. ``sd_x`` and ``sd_y`` are without what all places share, which does not turn the
         line from one stone to another.
-    contacts : sequence of Contact
+    contacts : sequence of HitCandidate
         The hits.
     radius : float
         Of the discs, m.
@@ -177,7 +177,7 @@ def share_spins(
                 ends.append((stone, k, stretch.spin_row(hits[stone][hit].t)))
     if not ends:
         return
-    meetings: list[tuple[Contact, list[_Side]]] = []
+    meetings: list[tuple[HitCandidate, list[_Side]]] = []
     for met in sorted(contacts, key=lambda met: met.t):
         sides = []
         for stone in (stone for stone in met.stones if stone in hits):
@@ -303,7 +303,7 @@ def _stretches(table: Columns, together: Floats, times: Sequence[float]) -> list
 
 
 def _constraints(
-    hit: Contact, sides: Sequence[_Side], spins: _Spins, radius: float
+    hit: HitCandidate, sides: Sequence[_Side], spins: _Spins, radius: float
 ) -> Iterator[tuple[Floats, float, float]]:
     """Linear constraints on spins that a hit gives: weights, value and standard error of each.
 
@@ -330,7 +330,9 @@ def _constraints(
         yield changes[0], rub[0], float(np.hypot(rub[1], unlike * rub[0]))
 
 
-def _spin_change(hit: Contact, sides: Sequence[_Side], radius: float) -> tuple[float, float] | None:
+def _spin_change(
+    hit: HitCandidate, sides: Sequence[_Side], radius: float
+) -> tuple[float, float] | None:
     """Change of spin that the changes of velocity imply, rad/s, and its standard error."""
     stretches = [stretch for side in sides for stretch in (side.before, side.after)]
     if not all(len(stretch.rows) for stretch in stretches):

@@ -12,7 +12,7 @@ from curlshot.data.sheet import STONE
 from curlshot.physics.filter.rate_filter import filtered, shared_response
 from curlshot.physics.filter.stretch import Model, Stretch
 from curlshot.physics.local_fit.noise import Noise
-from curlshot.physics.local_fit.shot_fit import ContactState, ShotFit
+from curlshot.physics.local_fit.solution import ContactState, LocalFit
 from curlshot.physics.local_fit.traces import Trace
 
 Floats = NDArray[np.float64]
@@ -22,7 +22,7 @@ POOR = 0.3
 
 
 def spins_at(
-    fit: ShotFit,
+    fit: LocalFit,
     k: int,
     known: Mapping[str, Trace],
     noise: Mapping[str, Noise],
@@ -35,7 +35,7 @@ def spins_at(
 
     Parameters
     ----------
-    fit : ShotFit
+    fit : LocalFit
         Which detections belong to which side.
     k : int
         Rank of the hit.
@@ -83,7 +83,7 @@ def _joined(own: Estimate, start: Estimate, change: Estimate, sign: float) -> Es
 
 
 def spin_on(
-    fit: ShotFit, rank: int, known: Mapping[str, Trace], noise: Mapping[str, Noise], time: float
+    fit: LocalFit, rank: int, known: Mapping[str, Trace], noise: Mapping[str, Noise], time: float
 ) -> Estimate:
     """Spin on one piece at a time on it or beside it, rad/s, as the filter of tracks tells it.
 
@@ -91,7 +91,7 @@ def spin_on(
 
     Parameters
     ----------
-    fit : ShotFit
+    fit : LocalFit
         Which detections belong to the piece.
     rank : int
         Of the piece.
@@ -123,7 +123,7 @@ def spin_on(
 
 
 def stone_friction(
-    fit: ShotFit,
+    fit: LocalFit,
     k: int,
     spins: Sequence[tuple[Estimate, Estimate]],
     radius: float,
@@ -136,7 +136,7 @@ def stone_friction(
     first, second = spins[0][0], spins[1][0]
     if first.value is None or second.value is None:
         stone = fit.meetings[k].stones[0 if first.value is None else 1]
-        return Estimate(), f"the spin of {stone} before the hit is not seen"
+        return Estimate(), f"the spin of {stone} before the hit was not measured"
     turn = radius * (first.value + second.value)
 
     def parts(states: Sequence[ContactState]) -> Floats:
@@ -164,7 +164,8 @@ def stone_friction(
         return Estimate(), f"the tangential impulse ({rub:.3f} ± {sd:.3f}) has the wrong sign"
     if room < 2 * sd_room:
         return Estimate(), (
-            f"the stones may have stopped sliding on each other: an impulse of {stick:.3f} does it,"
-            f" {rub:.3f} ± {sd_room:.3f} was seen, in units of the normal one"
+            "the stones may have stopped sliding on each other: the tangential impulse that"
+            f" stops it is {stick:.3f}, the measured one {rub:.3f} ± {sd_room:.3f}, in units of"
+            " the normal impulse"
         )
     return Estimate(max(float(rub), 0.0), sd), None

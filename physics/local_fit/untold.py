@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from curlshot.physics.local_fit.breaks import breaks
 from curlshot.physics.local_fit.candidates import REACH, TOUCHING
 from curlshot.physics.local_fit.segments import MOVED
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.physics.local_fit.ways import (
     FEWEST,
@@ -157,26 +157,26 @@ def _said(change: _Change, other: str, seen: bool) -> str:
     if change.hidden:
         first, second = sorted((name, other))
         return (
-            f"{first} and {second} hit each other {change.when}, as it seems: too little is"
-            " seen to tell that hit and its e"
+            f"{first} and {second} apparently hit each other {change.when}: too little is visible"
+            " to measure that hit and its e"
         )
     if seen:
         return (
-            f"{name} moved as {other} came to it {change.when}: a hit too soft, or seen too little,"
-            " to tell"
+            f"{name} moved when {other} came close {change.when}: the hit is too soft, or visible"
+            " too briefly, to measure"
         )
     return (
-        f"{other}, out of sight, hit {name} {change.when}, as it seems: too little is seen to"
-        " tell that hit and its e"
+        f"{other}, out of sight, apparently hit {name} {change.when}: too little is visible to"
+        " measure that hit and its e"
     )
 
 
 def _unfit(first: str, second: str, when: str, apart: float, radius: float) -> str:
     """Say that two stones hit each other where discs of this radius do not touch."""
     return (
-        f"the motion of {first} and {second} changes {when} as if they hit each other,"
-        f" {apart:.2g} m apart where two radii are {2 * radius:.3g} m: are the scale, the unit and"
-        " the radius right?"
+        f"the velocities of {first} and {second} change {when} as if they hit each other, but"
+        f" {apart:.2g} m apart, where two radii are {2 * radius:.3g} m: check scale, unit and"
+        " radius"
     )
 
 
@@ -185,14 +185,14 @@ def _said_alone(name: str, changes: Sequence[_Change]) -> str:
     when = [change.when for change in changes]
     if len(when) > LISTED:
         return (
-            f"the motion of {name} changes {len(when)} times between {changes[0].start:.2f} and"
-            f" {changes[-1].end:.2f} s and no stone is seen that hit it"
+            f"the velocity of {name} changes {len(when)} times between {changes[0].start:.2f} and"
+            f" {changes[-1].end:.2f} s without a visible stone that hit it"
         )
     times = " and ".join(filter(None, (", ".join(when[:-1]), when[-1])))
     if all(change.hidden for change in changes):
-        what = "neither that hit nor its e" if len(when) == 1 else "none of these hits"
-        return f"something hit {name} {times}: {what} is told"
-    return f"the motion of {name} changes {times} and no stone is seen that hit it"
+        what = "that hit and its e are unknown" if len(when) == 1 else "these hits are unknown"
+        return f"something hit {name} {times}: {what}"
+    return f"the velocity of {name} changes {times} without a visible stone that hit it"
 
 
 def _out_of_reach(
@@ -234,8 +234,9 @@ def _together(
         told.update(same.values())
         *names, last = sorted(same)
         text = (
-            f"the motion of {', '.join(names)} and {last} changes at once {first.when} and no stone"
-            " is seen that hit them: was the camera moved, or did people move the stones?"
+            f"the velocities of {', '.join(names)} and {last} change together {first.when}"
+            " without a visible stone that hit them: did the camera move, or did people move the"
+            " stones?"
         )
         said.append((first.end, text))
     left = {name: [c for c in own if c not in told] for name, own in alone.items()}
@@ -457,8 +458,9 @@ def _lost_and_found(
                 yield (
                     frozenset({lost, found}),
                     first.t,
-                    f"{lost} is last seen at {last.t:.2f} s and {found} first at {first.t:.2f} s,"
-                    " where their ways meet: a hit of the two, and its e, are not told",
+                    f"{lost} was last detected at {last.t:.2f} s and {found} first at"
+                    f" {first.t:.2f} s, where their paths cross: a hit of the two, and its e, are"
+                    " unknown",
                 )
 
 
@@ -487,8 +489,8 @@ def _touching(
                 yield (
                     pair,
                     stop,
-                    f"{name} came to rest touching {other}, or nearly, at {stop:.2f} s:"
-                    " a hit, if it was one, is too soft to tell",
+                    f"{name} came to rest at, or almost at, {other} at {stop:.2f} s: a hit, if"
+                    " there was one, is too soft to detect",
                 )
 
 

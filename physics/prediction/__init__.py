@@ -1,7 +1,7 @@
-"""The measured shot simulated: as it was fitted, as it would have been predicted, and what if.
+"""Simulations of the measured shot: the replay, the prediction, and what if.
 
-`start` has the states before the first hit and `laws` what is known or assumed of ice and hits.
-`hindcast` simulates with what the whole shot tells, `forecast` with what was known before its first
-hit, `as_fitted` draws from the fit; `spread` gives the standard errors of a simulated shot, and
-`what_if` changes it.
+`start` holds the states before the first hit, `laws` the measured or assumed laws of ice and hits.
+`replay` simulates with the fitted laws, `forecast` with what was known before the first hit.
+`fitted_shot` draws from the fit. `uncertainty` computes the standard errors of a simulated shot.
+`what_if` changes the shot.
 """

@@ -11,22 +11,22 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from curlshot.data.errors import InputError
-from curlshot.data.results import Collision, Estimate, Prediction
+from curlshot.data.results import Estimate, Hit, Prediction
 from curlshot.data.sheet import STONE
 from curlshot.physics.estimate import Estimates
 from curlshot.physics.impact import PointMass
-from curlshot.physics.local_fit.contacts import cut_all
 from curlshot.physics.local_fit.fit import fit_shot
 from curlshot.physics.local_fit.glides import free
+from curlshot.physics.local_fit.hit_detection import cut_all
 from curlshot.physics.local_fit.traces import traces
-from curlshot.physics.prediction.hindcast import explained_until, score
+from curlshot.physics.prediction.replay import explained_until, score
 from curlshot.physics.prediction.throws import first_hit, foreseen_until
+from curlshot.physics.shot_fit.model_selection import fit_with_chosen_laws
+from curlshot.physics.shot_fit.observed import observe
+from curlshot.physics.shot_fit.priors import Priors, literature
+from curlshot.physics.shot_fit.result import ShotFit, draw_choices
+from curlshot.physics.shot_fit.shot_model import penner
 from curlshot.physics.simulator.simulate import simulate
-from curlshot.physics.whole_shot.law_choice import fit_with_chosen_laws
-from curlshot.physics.whole_shot.priors import Priors, literature
-from curlshot.physics.whole_shot.shot_model import penner
-from curlshot.physics.whole_shot.watched import watch
-from curlshot.physics.whole_shot.whole_fit import GlobalFit, draw_choices
 
 Floats = NDArray[np.float64]
 
@@ -100,8 +100,8 @@ def predict(
     if not estimates.collisions:
         return {}
     first = first_hit(estimates.collisions)
-    rigid = Prediction(None, note="needs spins after the hit, which only the shot itself tells")
-    note = "too little is seen before the first hit"
+    rigid = Prediction(None, note="needs the spins after the hit, which a prediction does not have")
+    note = "too few detections before the first hit"
     try:
         fit = _before(detections[detections["t"] < first], radius, masses or {}, laws)
     except InputError as error:
@@ -119,7 +119,7 @@ def predict(
 
 def _before(
     detections: pd.DataFrame, radius: float, masses: Mapping[str, float], laws: Priors
-) -> GlobalFit | None:
+) -> ShotFit | None:
     """Fit the states of all stones to what was seen before the hit; None where none moves.
 
     Of a stone that something else than ice has moved, as a hand does, to what was seen since.
@@ -132,14 +132,14 @@ def _before(
         return None
     loose = fit_shot(known, pieces, (), radius, deceleration=free(radius), masses=masses)
     moving = {piece.stone for piece in pieces if not piece.rest}
-    watched = watch(
+    observed = observe(
         known, loose, radius, priors=laws, masses=masses, bystanders=sorted({*known} - moving)
     )
-    if watched is None:
+    if observed is None:
         return None
     moved = {
         name: float(trace.t[-1])
-        for name, trace in watched.traces.items()
+        for name, trace in observed.traces.items()
         if len(trace.t) < len(known[name].t)
     }
     if moved:
@@ -148,11 +148,11 @@ def _before(
     held = {
         name: law.value or 0.0 for name, law in vars(laws).items() if name in MOST or not law.stderr
     }
-    return fit_with_chosen_laws(replace(watched, off_centre=OFF_CENTRE), held)
+    return fit_with_chosen_laws(replace(observed, off_centre=OFF_CENTRE), held)
 
 
 @dataclass(frozen=True)
-class _Foretold:
+class _Predicted:
     """A shot as foretold: its simulated table, and who hits whom when, s."""
 
     table: pd.DataFrame
@@ -165,7 +165,7 @@ class _Foretold:
 
 
 def _scored(
-    fit: GlobalFit,
+    fit: ShotFit,
     model: str,
     tracks: pd.DataFrame,
     estimates: Estimates,
@@ -175,7 +175,7 @@ def _scored(
     clock = tracks.groupby("frame", sort=True)["t"].first()
     clock = clock[clock >= first]
     if clock.empty:
-        return Prediction(None, note="nothing is seen after the first hit")
+        return Prediction(None, note="no detections after the first hit")
     times = clock.to_numpy(float)
     seen = tracks[(tracks["seen"] != 0) & (tracks["t"] >= first)]
     at = {str(stone): float(t) for stone, t in seen.groupby("stone")["t"].max().items()}
@@ -188,7 +188,7 @@ def _scored(
     soon_enough = dict.fromkeys(stones, first + AFTER)
     if not any(frozenset(stones) in one.pairs(soon_enough) for one in (likely, *drawn)):
         # None of the draws is of this shot: as where a hand moves a stone before the hit.
-        note = f"as foretold, {' and '.join(stones)} do not hit each other within {AFTER} s"
+        note = f"in the prediction, {' and '.join(stones)} do not hit each other within {AFTER} s"
         return Prediction(None, note=note)
     spread = dict(zip(ends, _spreads(drawn, ends, places), strict=True))
     frames = pd.Series(clock.index, index=np.searchsorted(every, times))
@@ -212,15 +212,17 @@ def _scored(
 
 
 def _other_hits(
-    pairs: set[frozenset[str]], collisions: Sequence[Collision], note: str | None
+    pairs: set[frozenset[str]], collisions: Sequence[Hit], note: str | None
 ) -> str | None:
     """Add to a note who hit each other as foretold and did not, or the other way round."""
     seen = {frozenset(hit.stones) for hit in collisions}
     notes = [note] if note else []
     for stones in sorted(map(sorted, pairs - seen)):
-        notes.append(f"as foretold, {' and '.join(stones)} hit each other, which they did not")
+        notes.append(
+            f"in the prediction, {' and '.join(stones)} hit each other; in the clip they did not"
+        )
     for stones in sorted(map(sorted, seen - pairs)):
-        notes.append(f"as foretold, {' and '.join(stones)} do not hit each other")
+        notes.append(f"in the prediction, {' and '.join(stones)} do not hit each other")
     return "; ".join(notes) or None
 
 
@@ -243,7 +245,7 @@ def _errors_at(
     return out
 
 
-def _likely(fit: GlobalFit, laws: Priors, model: str, first: float, times: Floats) -> _Foretold:
+def _likely(fit: ShotFit, laws: Priors, model: str, first: float, times: Floats) -> _Predicted:
     """Simulate the shot with what is assumed of hits, and the plainest laws of the ice that may be.
 
     Those are the ones of fewest unknowns that `UNSURE` allows; Penner's, which has as few as
@@ -257,13 +259,13 @@ def _likely(fit: GlobalFit, laws: Priors, model: str, first: float, times: Float
 
 
 def _sampled(
-    fit: GlobalFit,
+    fit: ShotFit,
     values: Mapping[str, float],
     laws: Mapping[str, float],
     model: str,
     first: float,
     times: Floats,
-) -> _Foretold:
+) -> _Predicted:
     """Simulate a shot as fitted, its hits by given laws, at some times after the first."""
     seen = fit.shots[0]
     approach = seen.shot(values)
@@ -283,7 +285,7 @@ def _sampled(
     table = rest.sample(since)
     table["t"] += seen.start + lasts
     hits = ((frozenset(hit.stones), seen.start + lasts + hit.t) for hit in rest.hits)
-    return _Foretold(table, tuple(hits))
+    return _Predicted(table, tuple(hits))
 
 
 def _places(table: pd.DataFrame, rank: int) -> dict[str, Floats]:
@@ -293,8 +295,8 @@ def _places(table: pd.DataFrame, rank: int) -> dict[str, Floats]:
 
 
 def _drawn(
-    fit: GlobalFit, laws: Priors, model: str, first: float, times: Sequence[float]
-) -> list[_Foretold]:
+    fit: ShotFit, laws: Priors, model: str, first: float, times: Sequence[float]
+) -> list[_Predicted]:
     """Simulate the shot by draws of what is not known of states and laws, at increasing times."""
     rng = np.random.default_rng(0)
     out = []
@@ -309,7 +311,7 @@ def _drawn(
 
 
 def _spreads(
-    drawn: Sequence[_Foretold], times: Sequence[float], likely: Sequence[Mapping[str, Floats]]
+    drawn: Sequence[_Predicted], times: Sequence[float], likely: Sequence[Mapping[str, Floats]]
 ) -> list[dict[str, float]]:
     """Tell how far each stone's place may be off at some times, both axes together, m.
 

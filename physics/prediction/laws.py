@@ -8,14 +8,14 @@ from math import isclose
 
 import numpy as np
 
-from curlshot.data.results import Collision, Estimate, Friction, Joint, Results
+from curlshot.data.results import Estimate, Friction, Hit, JointEstimate, Results
 from curlshot.data.sheet import GRAVITY, STONE, curling_size
 from curlshot.physics.curl import Curl, FCV1Curl, NoCurl
 from curlshot.physics.estimate import Estimates
 from curlshot.physics.ice import Constant, Fit, IceLaw
 from curlshot.physics.impact import Frictional
+from curlshot.physics.shot_fit.priors import LITERATURE, STONE_FRICTION, literature
 from curlshot.physics.simulator.simulation import Shot
-from curlshot.physics.whole_shot.priors import LITERATURE, STONE_FRICTION, literature
 
 UNSCALED = Estimate(1.0, 0.0)
 """Stones that meet at two radii."""
@@ -78,14 +78,14 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         restitution = literature(radius).restitution
         assumed["restitution"] = f"restitution not measured, {restitution.value} assumed"
     e = min(max(restitution.value or 0.0, 0.0), 1.0)
-    rubbing = between_stones(shot.laws, shot.collisions)
+    rubbing = between_stones(shot.joint_estimate, shot.collisions)
     if rubbing.value is None:
         least = max([STONE_FRICTION, *map(_rub, shot.collisions)])
         how = "at least about" if least > STONE_FRICTION else "assumed to be"
         assumed["stone_friction"] = f"friction between the stones {how} {least:.2g}"
         # Hits that do not tell it hardly depend on it.
-        doubt = 0.0 if shot.collisions else LITERATURE.stone_friction.stderr
-        rubbing = Estimate(least, doubt)
+        uncertainty = 0.0 if shot.collisions else LITERATURE.stone_friction.stderr
+        rubbing = Estimate(least, uncertainty)
     ice, sd_friction = _ice(shot.friction, literature(radius).friction, assumed)
     curling = curling_size(radius)
     return Laws(
@@ -93,10 +93,12 @@ def measured_laws(shot: Estimates | Results, radius: float) -> Laws:
         Estimate(max(rubbing.value or 0.0, 0.0), rubbing.stderr),
         ice,
         sd_friction,
-        FCV1Curl(shot.curl.value or 0.0, _value(shot.laws, "loss", LOSS)) if curling else NoCurl(),
+        FCV1Curl(shot.curl.value or 0.0, _value(shot.joint_estimate, "loss", LOSS))
+        if curling
+        else NoCurl(),
         (shot.curl.stderr or 0.0) if curling else 0.0,
-        _of(shot.laws, "size") or UNSCALED,
-        _value(shot.laws, "inertia", STONE.inertia),
+        _of(shot.joint_estimate, "size") or UNSCALED,
+        _value(shot.joint_estimate, "inertia", STONE.inertia),
         assumed,
     )
 
@@ -111,7 +113,7 @@ def assumed_of(laws: Laws, shot: Shot) -> dict[str, str]:
     said = dict(laws.assumed)
     for name in own.keys() & said.keys():
         if not isclose(own[name], usual[name], rel_tol=1e-6):
-            said[name] = f"{name} not measured: {own[name]:.2g}, as in the fit of the whole shot"
+            said[name] = f"{name} not measured: {own[name]:.2g}, as in the shot fit"
     return said
 
 
@@ -120,7 +122,7 @@ def friction_at_1(ice: IceLaw) -> float:
     return float(ice.deceleration(1.0)) / GRAVITY
 
 
-def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estimate:
+def between_stones(laws: JointEstimate | None, collisions: Sequence[Hit]) -> Estimate:
     """Friction between the stones: of the whole shot if it tells it, else of its hits."""
     whole = _of(laws, "stone_friction")
     if whole is not None:
@@ -137,13 +139,13 @@ def between_stones(laws: Joint | None, collisions: Sequence[Collision]) -> Estim
     return Estimate(float(weights @ values / weights.sum()), float(weights.sum() ** -0.5))
 
 
-def _value(laws: Joint | None, name: str, usual: float) -> float:
+def _value(laws: JointEstimate | None, name: str, usual: float) -> float:
     """Value of one of the laws of a whole shot, the usual one where it does not tell it."""
     told = _of(laws, name)
     return usual if told is None or told.value is None else told.value
 
 
-def _of(laws: Joint | None, name: str) -> Estimate | None:
+def _of(laws: JointEstimate | None, name: str) -> Estimate | None:
     """One of the laws of a whole shot, None where it does not tell it."""
     if laws is None or name not in laws.names:
         return None
@@ -158,7 +160,7 @@ def _ice(friction: Friction, usual: Estimate, assumed: dict[str, str]) -> tuple[
         assumed["friction"] = f"friction not measured, {usual.value} assumed"
     value = friction.value or 0.0
     if value <= 0:
-        assumed["friction"] = f"friction came out as {value:.4f}, 0 used"
+        assumed["friction"] = f"friction measured as {value:.4f}, 0 used"
         return Constant(LEAST_FRICTION), 0.0
     sd = (friction.stderr or 0.0) / value
     return law_of(friction), sd
@@ -172,7 +174,7 @@ def law_of(friction: Friction) -> IceLaw:
     return Constant(friction.value or 0.0)
 
 
-def _rub(hit: Collision) -> float:
+def _rub(hit: Hit) -> float:
     """Tangential over normal impulse of a hit: the friction between the stones is no less.
 
     Where they stop sliding on each other before they part, any greater friction does the same.

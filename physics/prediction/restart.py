@@ -41,20 +41,18 @@ def measured_shot(path: Path) -> bool:
     return path.suffix.lower() == ".json"
 
 
-def read_start(path: Path, folder: Path) -> Start:
+def read_start(path: Path) -> Start:
     """Read the shot to simulate: written by hand, or measured.
 
     Parameters
     ----------
     path : Path
         SHOT.toml or results.json.
-    folder : Path
-        Where the simulation will be written.
 
     Raises
     ------
     InputError
-        Where there is no shot in the files, or `folder` holds the measured one.
+        Where there is no shot in the files.
     """
     from curlshot.data.results_file import read_results
     from curlshot.data.tracks import read_tracks
@@ -65,8 +63,6 @@ def read_start(path: Path, folder: Path) -> Start:
     if not measured_shot(path):
         return written_start(read_shot(path))
     results = read_results(path)
-    if folder.resolve() == path.parent.resolve():
-        raise InputError(f"{folder}: holds the run itself; name another folder with -o")
     tracks = read_tracks(_beside(path, "tracks.csv"))
     return measured_start(tracks, results, read_ensemble(_beside(path, "ensemble.json")))
 
@@ -74,7 +70,9 @@ def read_start(path: Path, folder: Path) -> Start:
 def _beside(path: Path, name: str) -> Path:
     file = path.with_name(name)
     if not file.exists():
-        raise InputError(f"{file}: no such file; it belongs beside {path.name}: run again")
+        raise InputError(
+            f"{file}: no such file; it belongs into the folder of {path.name}: run again"
+        )
     return file
 
 
@@ -85,8 +83,8 @@ def sampled(simulation: Simulation, fps: float, model: str) -> pd.DataFrame:
     end = max((rest.t for rest in simulation.rest.values()), default=0.0)
     if end * fps > MOST_SAMPLES:
         raise InputError(
-            f"`fps` {fps:g}: {end:.0f} s would be {end * fps:.1g} samples a"
-            f" stone; at most {MOST_SAMPLES:g}, please"
+            f"`fps` {fps:g}: {end:.0f} s would need {end * fps:.1g} samples a stone; at most"
+            f" {MOST_SAMPLES:g}"
         )
     times = np.append(np.arange(0.0, end, 1 / fps), end)
     return simulation_table(simulation.sample(times), model)
@@ -148,9 +146,11 @@ def _not_told(start: Start, count: int) -> list[str]:
     notes = []
     radius = start.shot.radius
     if not curling_size(radius):
-        notes.append(f"discs of radius {radius:g} m: no house, so none is in it or shot stone")
+        notes.append(
+            f"discs of radius {radius:g} m are not curling stones: no house and no shot stone"
+        )
     elif not start.house:
-        notes.append("places do not count from a tee: no stone is in a house or shot stone")
+        notes.append("the origin is not a tee: no house and no shot stone")
     if count == 1:
         notes.append("thrown once: no spread")
     return notes

@@ -94,12 +94,12 @@ def measured_start(tracks: pd.DataFrame, results: Results, ensemble: Ensemble) -
     late = newcomers(tracks, _before_hit(tracks, results))
     likely, *others = (_without(s, late) for s in (ensemble.likely, *ensemble.others))
     if not any(_moves(stone) for stone in likely.stones):
-        raise InputError("tracks: no stone moves before the first hit; nothing to throw again")
+        raise InputError("tracks: no stone moves before the first hit; nothing to throw")
     thrown = _fastest(likely.stones)
     way = _way_back(likely, thrown)
     shots = [_taken_back(shot, thrown, way) for shot in (likely, *others)]
     stone = shots[0].stones[thrown]
-    house = results.sheet and curling_size(results.radius)
+    house = results.origin_at_tee and curling_size(results.radius)
     release = 0.0
     if house:
         ahead = (stone.x * stone.vx + stone.y * stone.vy) / math.hypot(stone.vx, stone.vy)
@@ -142,7 +142,7 @@ def _spins(tracks: pd.DataFrame, shots: Sequence[Shot]) -> dict[str, str]:
             sd = float(np.std([shot.stones[k].omega for shot in shots[1:] or shots]))
             spin = f"spin of {stone.name}"
             likely = round(stone.omega, 3) + 0.0  # no -0
-            said[spin] = f"{spin} not seen: {likely:.2g} ± {sd:.2g} rad/s taken"
+            said[spin] = f"{spin} not measured: {likely:.2g} ± {sd:.2g} rad/s assumed"
     return said
 
 
@@ -153,7 +153,10 @@ def _moves(stone: StoneStart) -> bool:
 def _left_out(late: Mapping[str, float]) -> dict[str, str]:
     """Say so where stones do not lie there from the beginning."""
     each = ", ".join(f"{name} at {when:.2f} s" for name, when in late.items())
-    why = "first seen after this shot begins and left out, for where from is not known"
+    why = (
+        "first detected after the start of this shot and left out, since the earlier path is"
+        " unknown"
+    )
     return {"left out": f"{why}: {each}"} if late else {}
 
 

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.data.sheet import SHEET
 from curlshot.physics.simulator.bounds import Bounds
 
@@ -74,7 +74,7 @@ def newcomers(tracks: pd.DataFrame, time: float) -> dict[str, float]:
     }
 
 
-def first_hit(collisions: Sequence[Collision]) -> float:
+def first_hit(collisions: Sequence[Hit]) -> float:
     """Time, s, before which no stones have met for certain; infinity without a hit."""
     return min((hit.earliest for hit in collisions), default=np.inf)
 
@@ -93,11 +93,12 @@ def along_sheet(tracks: pd.DataFrame, hit: float, radius: float) -> bool:
     fastest = int(np.argmax(speeds))
     begin, (vx, vy) = ways[fastest].iloc[0], velocities[fastest]
     bounds = Bounds(1 if vy > 0 else -1, half_width=SHEET.half_width_max)
-    return float(bounds.beyond(begin["x"], begin["y"], radius)) <= 0 and abs(vx) < abs(vy)
+    inside = float(bounds.beyond(begin["x"], begin["y"], radius)) <= 0
+    return inside and bool(abs(vx) < abs(vy))
 
 
 def foreseen_until(
-    ends: Mapping[str, float], collisions: Sequence[Collision], known: Collection[str]
+    ends: Mapping[str, float], collisions: Sequence[Hit], known: Collection[str]
 ) -> dict[str, float]:
     """Tell until when, s, stones go as they would without those that are not `known`.
 

@@ -11,6 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from curlshot.data.errors import InputError
+from curlshot.data.limits import FRACTION, FRICTION, OFFSET, SPEED, SPIN, Limits
 from curlshot.data.progress import Progress, no_progress
 from curlshot.data.sheet import HOUSE
 from curlshot.physics.prediction.laws import friction_at_1
@@ -38,6 +39,35 @@ class Amount:
         return self.value * present if self.relative else self.value
 
 
+def amount_of(given: float | str | Amount, limits: Limits) -> Amount:
+    """Return what a person gives, a number or a factor such as ``"1.1x"``, as an amount.
+
+    Raises
+    ------
+    InputError
+        Where it is neither, or lies outside of the limits.
+
+    Examples
+    --------
+    >>> from curlshot.data.limits import SPEED
+    >>> amount_of("1.1x", SPEED).of(2.0)
+    2.2
+    """
+    if isinstance(given, Amount):
+        return given
+    text = str(given)
+    number = text.removesuffix("x")
+    try:
+        value = math.nan if isinstance(given, bool) else float(number)
+    except ValueError:
+        value = math.nan
+    if not limits.allow(value):
+        raise InputError(
+            f"{text!r} is not {limits.what}, nor a factor such as 1.1x, at most {limits.high:g}x"
+        )
+    return Amount(value, number != text)
+
+
 @dataclass(frozen=True)
 class Changes:
     """What is to be different; None leaves it as it was.
@@ -57,6 +87,37 @@ class Changes:
     speed: Amount | None = None
     spin: Amount | None = None
     aim_offset: float = 0.0
+
+    @classmethod
+    def of(
+        cls,
+        *,
+        restitution: float | None = None,
+        friction: float | None = None,
+        speed: float | str | Amount | None = None,
+        spin: float | str | Amount | None = None,
+        aim_offset: float = 0.0,
+    ) -> Changes:
+        """Return the changes that a person asks for.
+
+        Raises
+        ------
+        InputError
+            A value that makes no sense.
+        """
+        for name, value, limits in (
+            ("restitution", restitution, FRACTION), ("friction", friction, FRICTION),
+            ("aim_offset", aim_offset, OFFSET),
+        ):  # fmt: skip
+            if value is not None:
+                limits.check(f"`{name}`", value)
+        amounts: dict[str, Amount | None] = {}
+        for name, given, limits in (("speed", speed, SPEED), ("spin", spin, SPIN)):
+            try:
+                amounts[name] = None if given is None else amount_of(given, limits)
+            except InputError as error:
+                raise InputError(f"`{name}`: {error}") from None
+        return cls(restitution, friction, **amounts, aim_offset=float(aim_offset))
 
 
 @dataclass(frozen=True)
@@ -94,23 +155,23 @@ def changed(start: Start, changes: Changes) -> Start:
     speed = math.hypot(stone.vx, stone.vy)
     if changes.speed and speed > FASTEST_THROW:
         raise InputError(
-            f"speed: {stone.name} would be thrown at {speed:.3g} m/s; at most {FASTEST_THROW:g}"
+            f"`speed`: {stone.name} would be thrown at {speed:.3g} m/s; at most {FASTEST_THROW:g}"
         )
     if changes.spin and abs(stone.omega) > MOST_SPIN:
         raise InputError(
-            f"spin: {stone.name} would turn at {stone.omega:.3g} rad/s; at most {MOST_SPIN:g}"
+            f"`spin`: {stone.name} would turn at {stone.omega:.3g} rad/s; at most {MOST_SPIN:g}"
         )
     if changes.aim_offset:
         if shot.bounds is not None and shot.bounds.beyond(stone.x, stone.y, shot.radius) > 0:
             raise InputError(
-                f"aim offset {changes.aim_offset:g} m: {stone.name} would begin off the sheet;"
-                " choose another"
+                f"`aim_offset` {changes.aim_offset:g}: {stone.name} would start outside the"
+                " sheet; choose another"
             )
         for other in shot.stones:
             apart = math.dist((stone.x, stone.y), (other.x, other.y))
             if other is not stone and apart < 2 * shot.radius:
                 raise InputError(
-                    f"aim offset {changes.aim_offset:g} m: {stone.name} would begin on top of"
+                    f"`aim_offset` {changes.aim_offset:g}: {stone.name} would start on top of"
                     f" {other.name}; choose another"
                 )
     told = {

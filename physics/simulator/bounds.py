@@ -31,6 +31,12 @@ class Bounds:
         +1 where stones are thrown up y, -1 where they are thrown down.
     half_width, back_line, hog_line : float
         Distances of the lines from the tee, m.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> float(curlshot.Bounds(play=-1).beyond(0.0, 0.0, 0.1455)) < 0
+    True
     """
 
     play: int = 1

@@ -72,7 +72,7 @@ def simulate_many(
     vary : mapping, optional
         Parameter of the model of impact to its value in each variant.
     progress : callable
-        Told how many are done.
+        Called how many are done.
 
     Returns
     -------

@@ -111,7 +111,9 @@ def read_shot(path: Path) -> Shot:
         raise InputError(f"{path}: {error.strerror}") from None
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         if path.suffix.lower() != ".toml":
-            raise InputError(f"{path}: no shot; name a SHOT.toml or the folder of a run") from None
+            raise InputError(
+                f"{path}: not a shot; name a SHOT.toml or the folder of a run"
+            ) from None
         why = "not a text in UTF-8" if isinstance(error, UnicodeDecodeError) else _why(error, text)
         raise InputError(f"{path}: not TOML: {why}") from None
     faults: list[str] = []

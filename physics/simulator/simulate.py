@@ -18,7 +18,7 @@ from curlshot.physics.simulator.approach import first_contact
 from curlshot.physics.simulator.bounds import leaves_at
 from curlshot.physics.simulator.event_queue import EventQueue
 from curlshot.physics.simulator.motion import Motion, Path, Point
-from curlshot.physics.simulator.simulation import Hit, Rest, Shot, Simulation, check_shot
+from curlshot.physics.simulator.simulation import HitEvent, Rest, Shot, Simulation, check_shot
 
 TOUCHING = 1e-9
 """Gap up to which two stones touch, m."""
@@ -73,7 +73,7 @@ class _Run:
     def __init__(self, shot: Shot) -> None:
         self.shot = shot
         self.t = 0.0
-        self.hits: list[Hit] = []
+        self.hits: list[HitEvent] = []
         self.hit_count = [0] * len(shot.stones)
         self.paths: list[list[Path]] = [[] for _ in shot.stones]
         self.leaves: dict[int, float] = {}
@@ -243,7 +243,7 @@ class _Run:
         if listed:
             before = {first.name: _state(one), second.name: _state(two)}
             then = {first.name: _state(new_one), second.name: _state(new_two)}
-            self.hits.append(Hit(self.t, (first.name, second.name), n, before, then))
+            self.hits.append(HitEvent(self.t, (first.name, second.name), n, before, then))
             self.hit_count[i] += 1
             self.hit_count[j] += 1
         overlap = self.reach[min(i, j), max(i, j)] - distance

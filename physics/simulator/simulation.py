@@ -53,6 +53,12 @@ class StoneStart:
         the stone's k-th hit and the last to all that follow.
     mass : float
         Mass, kg.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.StoneStart("A", x=0.3, y=6.0, vy=-2.2, omega=1.5).mass
+    19.1
     """
 
     name: str
@@ -72,6 +78,18 @@ class Shot:
 
     ``radius`` in m. Where there are ``bounds``, stones that leave them are taken away; without,
     the ice goes on for ever.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> shot = curlshot.Shot(
+    ...     (curlshot.StoneStart("A", 0.0, 6.0, vy=-2.0), curlshot.StoneStart("B", 0.1, 0.0)),
+    ...     impact=curlshot.Frictional(restitution=0.83, stone_friction=0.05),
+    ...     ice=curlshot.Constant(0.0109),
+    ...     bounds=curlshot.Bounds(play=-1),
+    ... )
+    >>> [hit.stones for hit in curlshot.simulate(shot).hits]
+    [('A', 'B')]
     """
 
     stones: tuple[StoneStart, ...]
@@ -108,11 +126,19 @@ class States:
 
 
 @dataclass(frozen=True)
-class Hit:
+class HitEvent:
     """One hit: when, of whom, and their states before and after.
 
     The first stone is the one that was faster before the hit; ``normal`` is the unit vector
     from it to the second.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> stones = (curlshot.StoneStart("A", 0.0, 1.0, vy=-1.5), curlshot.StoneStart("B", 0.0, 0.0))
+    >>> hit = curlshot.simulate(curlshot.Shot(stones)).hits[0]
+    >>> f"{hit.stones[0]} on {hit.stones[1]}, {hit.closing_speed:.2f} m/s"
+    'A on B, 1.46 m/s'
     """
 
     t: float
@@ -146,7 +172,7 @@ class Simulation:
 
     Attributes
     ----------
-    hits : tuple of Hit
+    hits : tuple of HitEvent
         In the order in which they happened.
     rest : dict
         Per stone its place of rest, or its place at the end where the simulation was ended
@@ -157,7 +183,7 @@ class Simulation:
         Time at which stones left the play, s, of those that did.
     """
 
-    hits: tuple[Hit, ...]
+    hits: tuple[HitEvent, ...]
     rest: Mapping[str, Rest]
     paths: Mapping[str, tuple[Path, ...]]
     gone: Mapping[str, float] = field(default_factory=dict)

@@ -6,20 +6,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from curlshot.data.results import Collision, Estimate, Glide, StoneResult
+from curlshot.data.results import Estimate, Glide, Hit, StoneResult
 from curlshot.physics.statistics.random_effects import random_effects
 
 
-def results_by_stone(
-    glides: Sequence[Glide], collisions: Sequence[Collision]
-) -> dict[str, StoneResult]:
+def results_by_stone(glides: Sequence[Glide], collisions: Sequence[Hit]) -> dict[str, StoneResult]:
     """Gather glides and spins by stone.
 
     Parameters
     ----------
     glides : sequence of Glide
         Of all stones.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         In order of time.
 
     Returns
@@ -31,12 +29,12 @@ def results_by_stone(
     return {stone: _result(stone, glides, collisions) for stone in stones}
 
 
-def _result(stone: str, glides: Sequence[Glide], collisions: Sequence[Collision]) -> StoneResult:
+def _result(stone: str, glides: Sequence[Glide], collisions: Sequence[Hit]) -> StoneResult:
     own = [glide for glide in glides if glide.stone == stone]
     speeds = [glide.speed for glide in own if glide.speed is not None]
     return StoneResult(
         _mean([(glide.friction, glide.stderr) for glide in own]),
-        _mean([(glide.turn, glide.stderr_turn) for glide in own]),
+        _mean([(glide.turn_rate, glide.stderr_turn_rate) for glide in own]),
         float(np.mean(speeds)) if speeds else None,
         _spin(stone, collisions),
     )
@@ -49,7 +47,7 @@ def _mean(found: Sequence[tuple[float | None, float | None]]) -> Estimate:
     return random_effects(values, np.diag(errors**2)).mean
 
 
-def _spin(stone: str, collisions: Sequence[Collision]) -> Estimate:
+def _spin(stone: str, collisions: Sequence[Hit]) -> Estimate:
     """Spin before the first hit of a stone that moves then, else after it."""
     for hit in collisions:
         if stone in hit.stones:

@@ -69,9 +69,9 @@ def pool(values: Sequence[float], stderrs: Sequence[float], prior_scatter: float
     """
     y, s = np.asarray(values, float), np.asarray(stderrs, float)
     if y.shape != s.shape or y.ndim != 1 or not (np.isfinite(y).all() and np.isfinite(s).all()):
-        raise ValueError("values and standard errors of the same number, finite, please")
+        raise ValueError("values and standard errors must be finite and equally many")
     if np.any(s <= 0) or not prior_scatter > 0:
-        raise ValueError("standard errors and the prior's scale are above zero")
+        raise ValueError("standard errors and the scale of the prior must be above zero")
     if not len(y):
         return Pooled(None, None, None, None, 0)
     # Shots that differ by far more than the prior thought of are not to be argued away.

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision, Results
+from curlshot.data.results import Hit, Results
 from curlshot.physics.statistics.pool import FRICTION_SCATTER, RESTITUTION_SCATTER, Pooled, pool
 
 SHOT_COLUMNS = (
@@ -63,18 +63,17 @@ def shots_table(season: Mapping[str, Results]) -> pd.DataFrame:
             shot.friction.stderr,
             shot.friction.law,
             len(shot.warnings),
-            _why_not(shot),
+            why_unknown(shot, [name for name in SCATTER if getattr(shot, name).value is None]),
         )
         for name, shot in season.items()
     ]
     return _numbers(rows, SHOT_COLUMNS, texts=("shot", "law", "note"))
 
 
-def _why_not(shot: Results) -> str:
-    """Say why e or μ of a shot is not known: what its warnings have about it."""
-    missing = [name for name in SCATTER if getattr(shot, name).value is None]
+def why_unknown(shot: Results, names: Sequence[str]) -> str:
+    """Return what the warnings of a shot have about ``restitution`` or ``friction``."""
     # What is said of the friction between stones is not of the ice.
-    about = re.compile("|".join(rf"\b{name}\b(?! between)" for name in missing) or "(?!)")
+    about = re.compile("|".join(rf"\b{name}\b(?! between)" for name in names) or "(?!)")
     return "; ".join(warning for warning in shot.warnings if about.search(warning))
 
 
@@ -99,7 +98,7 @@ def hits_table(season: Mapping[str, Results]) -> pd.DataFrame:
     return _numbers(rows, HIT_COLUMNS, texts=("shot", "first", "second", "note"))
 
 
-def closing_speed(hit: Collision) -> float:
+def closing_speed(hit: Hit) -> float:
     """Speed at which the stones came together along the normal, m/s."""
     first, second = (hit.before[name] for name in hit.stones)
     return float(np.dot(hit.normal, (first.vx - second.vx, first.vy - second.vy)))

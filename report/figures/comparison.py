@@ -8,21 +8,23 @@ from typing import TYPE_CHECKING
 import pandas as pd
 from matplotlib.figure import Figure
 
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.report.figures.parts import (
     LABELS,
     WIDTH,
+    OnAxes,
     draw_measured,
     hits_of,
     legend_below,
     line,
+    panels,
     rows_of,
     set_height,
     short,
     time_axis,
     title,
 )
-from curlshot.report.style import BLACK, model_lines, new_figure, plain_text, styled
+from curlshot.report.style import BLACK, model_lines, plain_text, styled
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -32,7 +34,8 @@ def comparison_figure(
     tracks: pd.DataFrame,
     simulations: Mapping[str, pd.DataFrame],
     stone: str,
-    collisions: Sequence[Collision] = (),
+    collisions: Sequence[Hit] = (),
+    on: OnAxes = None,
 ) -> Figure:
     """One stone's simulated x and y, a line per model, against the measured ones.
 
@@ -47,14 +50,17 @@ def comparison_figure(
         Sampled simulation of each model: ``stone, t, x, y`` and, if known, ``sd_x, sd_y``.
     stone : str
         Which stone.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order.
+    on : sequence of Axes, optional
+        Where to draw, two panels; a figure of its own without.
     """
     rows = rows_of(tracks, stone)
     lines = model_lines(simulations)
     with styled():
-        figure = new_figure(WIDTH, 4.4)
-        axes = figure.subplots(2, 1, sharex=True)
+        figure, grid = panels(on, WIDTH, 4.4, 2, sharex=True)
+        axes = grid[:, 0]
+        first, last = (None, None) if on is None else axes
         for ax, column in zip(axes, ("x", "y"), strict=True):
             t, values, sd, seen = rows[["t", column, f"sd_{column}", "seen"]].to_numpy(float).T
             draw_measured(ax, t, values, sd, seen)
@@ -74,11 +80,11 @@ def comparison_figure(
         own = [(rank, c.t) for rank, c in hits_of(collisions, stone)]
         time_axis(axes, own, rows["t"].to_numpy(float))
         figure.align_ylabels(axes)
-        title(figure, f"Stone {short(stone, 40)}: simulated and measured")
+        title(figure, f"Stone {short(stone, 40)}: simulated and measured", first)
         handles: list[Artist] = [line("measured (± 2 sd)", color=BLACK)]
         handles += [
             line(plain_text(model), color=colour, linestyle=dash, lw=1.6)
             for model, (colour, dash) in lines.items()
         ]
-        legend_below(figure, handles)
+        legend_below(figure, handles, last)
     return figure

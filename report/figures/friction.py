@@ -17,15 +17,17 @@ from curlshot.physics.prediction.laws import law_of
 from curlshot.report.figures.parts import (
     WIDTH,
     Array,
+    OnAxes,
     legend_below,
     line,
+    panels,
     rows_of,
     short,
     speeds,
     title,
 )
 from curlshot.report.numbers import plus_minus
-from curlshot.report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
+from curlshot.report.style import BLACK, GREY, PALE, stone_colours, styled
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -47,7 +49,12 @@ FAINT = 0.35
 
 
 def friction_figure(
-    glides: Sequence[Glide], friction: Friction, tracks: pd.DataFrame, *, curling: bool = True
+    glides: Sequence[Glide],
+    friction: Friction,
+    tracks: pd.DataFrame,
+    *,
+    curling: bool = True,
+    on: OnAxes = None,
 ) -> Figure:
     """Friction of each glide over the speeds that it spans, and the law fitted to the shot.
 
@@ -66,6 +73,8 @@ def friction_figure(
     curling : bool
         Whether these are stones on curling ice: then laws of the literature are shown too, and
         the range that was measured.
+    on : Axes, optional
+        Where to draw; a figure of its own without.
     """
     colours = stone_colours(tracks["stone"].unique())
     spans = [(glide, _span(glide, tracks)) for glide in glides]
@@ -74,8 +83,9 @@ def friction_figure(
     v = np.linspace(_SLOWEST, fastest, 200)
     handles: list[Artist] = []
     with styled():
-        figure = new_figure(WIDTH, 3.4)
-        ax = figure.subplots()
+        figure, grid = panels(on, WIDTH, 3.4)
+        ax = grid[0, 0]
+        given = None if on is None else ax
         if curling:
             ax.axhspan(*MEASURED, color=PALE, alpha=0.5, lw=0, zorder=0)
             # As pale as the range itself: the darker band is this shot's.
@@ -91,7 +101,7 @@ def friction_figure(
         for name in sorted({glide.stone for glide, _ in known}):
             handles.append(line(f"stone {short(name)}", color=colours[name], lw=2.2))
         if len(telling) < len(known):
-            handles.append(line("poorly known (▴▾ beyond)", color=GREY, alpha=FAINT, lw=2.2))
+            handles.append(line("uncertain (▴▾ beyond)", color=GREY, alpha=FAINT, lw=2.2))
         if friction.value is not None:
             mu = _friction(law_of(friction), v)
             error = 2 * (friction.stderr or 0.0)
@@ -103,9 +113,11 @@ def friction_figure(
         ax.set(xlabel="speed (m/s)", ylabel="μ", xlim=(0, fastest))
         ax.set_ylim(*limits)
         what = "Friction of the ice" if curling else "Friction"
-        title(figure, f"{what} against speed")
+        title(figure, f"{what} against speed", given)
         if handles:
-            figure.set_figheight(2.6 + 0.2 * legend_below(figure, handles))
+            rows = legend_below(figure, handles, given)
+            if on is None:
+                figure.set_figheight(2.6 + 0.2 * rows)
     return figure
 
 

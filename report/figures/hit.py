@@ -10,17 +10,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from curlshot.data.results import Collision, MeasuredState
+from curlshot.data.results import Hit, MeasuredState
 from curlshot.data.sheet import STONE
-from curlshot.report.figures.parts import WIDTH, Array, said, short, symbols, title
+from curlshot.report.figures.parts import WIDTH, Array, OnAxes, panels, said, short, symbols, title
 from curlshot.report.numbers import DASH, plus_minus
-from curlshot.report.style import AFTER, BEFORE, BLACK, GREY, new_figure, styled
+from curlshot.report.style import AFTER, BEFORE, BLACK, GREY, styled
 from curlshot.report.tables import in_axes
 
 _COLUMNS = ((0.47, "$v_n$ (m/s)"), (0.74, "$v_t$ (m/s)"), (1.0, "ω (rad/s)"))
 
 
-def hit_figure(collision: Collision, rank: int = 1, radius: float = STONE.radius) -> Figure:
+def hit_figure(
+    collision: Hit, rank: int = 1, radius: float = STONE.radius, on: OnAxes = None
+) -> Figure:
     """One hit in its normal and tangential axes, with the velocities before and after it.
 
     n points from the first stone to the second, t is n turned a quarter to the left; the
@@ -28,25 +30,28 @@ def hit_figure(collision: Collision, rank: int = 1, radius: float = STONE.radius
 
     Parameters
     ----------
-    collision : Collision
+    collision : Hit
         The hit.
     rank : int
         Its rank among the hits of the shot, for the title.
     radius : float
         Radius of the stones, m.
+    on : sequence of Axes, optional
+        Where to draw, one for the stones and one for the numbers; a figure of its own without.
     """
     first, second = collision.stones
     with styled():
-        figure = new_figure(WIDTH, 5.2)
-        ax, table = figure.subplots(2, 1, height_ratios=[1.75, 1])
-        _draw_stones(ax, collision, radius)
+        figure, grid = panels(on, WIDTH, 5.2, 2, height_ratios=[1.75, 1])
+        stones, table = grid[:, 0]
+        _draw_stones(stones, collision, radius)
         _write_components(table, collision)
         time = plus_minus(collision.t, collision.stderr_t)
-        title(figure, f"Hit {rank}: {short(first)} on {short(second)} at {time} s")
+        what = f"Hit {rank}: {short(first)} on {short(second)} at {time} s"
+        title(figure, what, None if on is None else stones)
     return figure
 
 
-def _draw_stones(ax: Axes, collision: Collision, radius: float) -> None:
+def _draw_stones(ax: Axes, collision: Hit, radius: float) -> None:
     n = np.array(collision.normal, float)
     t = np.array([-n[1], n[0]])
     first, second = collision.stones
@@ -83,7 +88,7 @@ def _draw_stones(ax: Axes, collision: Collision, radius: float) -> None:
     ax.spines[:].set_visible(False)
 
 
-def _arrows(collision: Collision) -> dict[tuple[str, str], Array]:
+def _arrows(collision: Hit) -> dict[tuple[str, str], Array]:
     """Known velocities by when and stone, m/s."""
     out = {}
     for when, side in (("before", collision.before), ("after", collision.after)):
@@ -112,7 +117,7 @@ def _free_direction(busy: Sequence[Array]) -> Array:
     return np.asarray(candidates[int(np.argmin(nearest))], float)
 
 
-def _write_components(ax: Axes, collision: Collision) -> None:
+def _write_components(ax: Axes, collision: Hit) -> None:
     """Write the n and t components and the spins as a small table, and e below it."""
     ax.set_axis_off()
     ax.set(xlim=(0, 1), ylim=(0, 1))

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from curlshot.data.results import Collision, Glide, MeasuredState
+from curlshot.data.results import Glide, Hit, MeasuredState
 from curlshot.data.sheet import GRAVITY, STONE
 from curlshot.report.figures.parts import (
     LABELS,
@@ -18,12 +18,14 @@ from curlshot.report.figures.parts import (
     WIDTH,
     Array,
     Hits,
+    OnAxes,
     broken,
     draw_measured,
     hits_of,
     legend_below,
     legend_beside,
     line,
+    panels,
     rows_of,
     said,
     set_height,
@@ -33,7 +35,7 @@ from curlshot.report.figures.parts import (
     title,
 )
 from curlshot.report.numbers import plus_minus
-from curlshot.report.style import AFTER, BEFORE, GREEN, new_figure, stone_colours, styled
+from curlshot.report.style import AFTER, BEFORE, GREEN, stone_colours, styled
 from curlshot.report.tables import magnitude, moving_stones
 
 _TANGENT = 0.4  # s of fitted velocity drawn on either side of a hit, at most
@@ -48,8 +50,9 @@ _RATES = {
 def motion_figure(
     tracks: pd.DataFrame,
     stone: str,
-    collisions: Sequence[Collision],
+    collisions: Sequence[Hit],
     glides: Sequence[Glide] = (),
+    on: OnAxes = None,
 ) -> Figure:
     """One stone's x, y and speed against time, with the velocities fitted at each hit.
 
@@ -64,15 +67,17 @@ def motion_figure(
         With `curlshot.data.tracks.TRACK_COLUMNS`.
     stone : str
         Which stone.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order; those of this stone are marked, by their rank.
     glides : sequence of Glide
         With their friction; those of this stone are drawn.
+    on : sequence of Axes, optional
+        Where to draw, three panels; a figure of its own without.
     """
     rows, hits = rows_of(tracks, stone), hits_of(collisions, stone)
     own = [g for g in glides if g.stone == stone and g.friction is not None]
     with styled():
-        figure, axes = _panels(3, max(2 * len(hits), len(own)))
+        figure, axes = _panels(on, 3, max(2 * len(hits), len(own)))
         for ax, column in zip(axes, ("x", "y"), strict=False):
             t, values, sd, seen = rows[["t", column, f"sd_{column}", "seen"]].to_numpy(float).T
             draw_measured(ax, t, values, sd, seen)
@@ -87,11 +92,13 @@ def motion_figure(
         set_height(axes[2], bottom=0.0)
         time_axis(axes, [(rank, c.t) for rank, c in hits], t)
         figure.align_ylabels(axes)
-        title(figure, f"Stone {short(stone, 40)}: motion")
+        title(figure, f"Stone {short(stone, 40)}: motion", None if on is None else axes[0])
     return figure
 
 
-def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Figure:
+def spin_figure(
+    tracks: pd.DataFrame, stone: str, collisions: Sequence[Hit], on: OnAxes = None
+) -> Figure:
     """One stone's angle and spin against time, with the spins fitted at each hit.
 
     Drawn as `motion_figure`; the spins at the hits are points with bars of two standard
@@ -103,12 +110,14 @@ def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision
         With `curlshot.data.tracks.TRACK_COLUMNS`.
     stone : str
         Which stone.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order; those of this stone are marked, by their rank.
+    on : sequence of Axes, optional
+        Where to draw, two panels; a figure of its own without.
     """
     rows, hits = rows_of(tracks, stone), hits_of(collisions, stone)
     with styled():
-        figure, axes = _panels(2, 2 * len(hits))
+        figure, axes = _panels(on, 2, 2 * len(hits))
         for ax, column, cuts in zip(axes, ("theta", "omega"), ((), hits), strict=True):
             t, values, sd, seen = rows[["t", column, f"sd_{column}", "seen"]].to_numpy(float).T
             draw_measured(ax, t, values, sd, seen, [c.t for _, c in cuts])
@@ -119,19 +128,23 @@ def spin_figure(tracks: pd.DataFrame, stone: str, collisions: Sequence[Collision
         set_height(axes[1], 0.1)
         time_axis(axes, [(rank, c.t) for rank, c in hits], rows["t"].to_numpy(float))
         figure.align_ylabels(axes)
-        title(figure, f"Stone {short(stone, 40)}: angle and spin")
+        title(figure, f"Stone {short(stone, 40)}: angle and spin", None if on is None else axes[0])
     return figure
 
 
 def speed_figure(
-    tracks: pd.DataFrame, collisions: Sequence[Collision] = (), radius: float = STONE.radius
+    tracks: pd.DataFrame,
+    collisions: Sequence[Hit] = (),
+    radius: float = STONE.radius,
+    on: OnAxes = None,
 ) -> Figure:
     """Speed of every stone that moved against time, with bands of two standard deviations."""
     stones = moving_stones(tracks, collisions, radius)
     colours = stone_colours(tracks["stone"].unique())
     with styled():
-        figure = new_figure(WIDTH, 3.0)
-        ax = figure.subplots()
+        figure, grid = panels(on, WIDTH, 3.0)
+        ax = grid[0, 0]
+        given = None if on is None else ax
         for stone in stones:
             rows = rows_of(tracks, stone)
             speed, sd = speeds(rows)
@@ -145,19 +158,20 @@ def speed_figure(
         ax.set_ylabel(LABELS["speed"])
         set_height(ax, bottom=0.0)
         time_axis([ax], [(k, c.t) for k, c in enumerate(collisions, 1)], tracks["t"].to_numpy())
-        title(figure, "Speed")
+        title(figure, "Speed", given)
         if stones:
-            legend_below(figure, ax.get_legend_handles_labels()[0])
+            legend_below(figure, ax.get_legend_handles_labels()[0], given)
     return figure
 
 
-def _panels(count: int, entries: int) -> tuple[Figure, list[Axes]]:
+def _panels(on: OnAxes, count: int, entries: int) -> tuple[Figure, list[Axes]]:
     """Panels above each other, each with room for a legend of so many entries beside it."""
-    figure = new_figure(WIDTH, count * max(1.45, 0.19 * min(entries, MOST_ENTRIES) + 0.5) + 0.55)
-    return figure, list(figure.subplots(count, 1, sharex=True))
+    height = count * max(1.45, 0.19 * min(entries, MOST_ENTRIES) + 0.5) + 0.55
+    figure, grid = panels(on, WIDTH, height, count, sharex=True)
+    return figure, list(grid[:, 0])
 
 
-def _sides(stone: str, hits: Hits) -> list[tuple[str, str, Collision, MeasuredState, float]]:
+def _sides(stone: str, hits: Hits) -> list[tuple[str, str, Hit, MeasuredState, float]]:
     """Each known state of a stone at its hits: label, colour, hit, state, end of its validity."""
     times = [c.t for _, c in hits]
     out = []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pandas as pd
@@ -14,9 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
-from curlshot.data.results import Collision
+from curlshot.data.errors import InputError
+from curlshot.data.results import Hit
 from curlshot.report.numbers import fixed, parts
-from curlshot.report.style import BLACK, GREY, PALE, plain_text
+from curlshot.report.style import BLACK, GREY, PALE, new_figure, plain_text
 from curlshot.report.tables import magnitude
 
 if TYPE_CHECKING:
@@ -39,12 +40,38 @@ LABELS = {
 MOST_ENTRIES = 10
 """Entries of a legend beside a panel, at most."""
 
-Hits = Sequence[tuple[int, Collision]]
+Hits = Sequence[tuple[int, Hit]]
 """Hits with their ranks."""
 
 
-def title(figure: Figure, text: str) -> None:
-    """Set the one line above a figure, at its left edge; the text is taken as it is."""
+OnAxes = Axes | Sequence[Axes] | NDArray[Any] | None
+"""What a figure is drawn on: axes of the caller, or a figure of its own."""
+
+
+def panels(
+    on: OnAxes, width: float, height: float, rows: int = 1, columns: int = 1, **layout: Any
+) -> tuple[Figure, NDArray[Any]]:
+    """Return a figure and its axes, shape (rows, columns): those given, or new ones.
+
+    Raises
+    ------
+    InputError
+        Where another number of axes is given.
+    """
+    if on is None:
+        figure = new_figure(width, height)
+        return figure, np.asarray(figure.subplots(rows, columns, squeeze=False, **layout))
+    given = np.asarray(on, object).ravel()
+    if given.size != rows * columns:
+        raise InputError(f"ax: {given.size} axes given; this figure needs {rows * columns}")
+    return cast(Figure, given[0].figure), given.reshape(rows, columns)
+
+
+def title(figure: Figure, text: str, ax: Axes | None = None) -> None:
+    """Set the one line above a figure, or above `ax`; the text is taken as it is."""
+    if ax is not None:
+        ax.set_title(text, loc="left", fontsize=10, fontweight="bold", pad=14)
+        return
     figure.suptitle(text, x=0.01, ha="left", fontsize=10, fontweight="bold")
 
 
@@ -53,7 +80,7 @@ def rows_of(table: pd.DataFrame, stone: str) -> pd.DataFrame:
     return table[table["stone"] == stone].sort_values("t")
 
 
-def hits_of(collisions: Sequence[Collision], stone: str) -> list[tuple[int, Collision]]:
+def hits_of(collisions: Sequence[Hit], stone: str) -> list[tuple[int, Hit]]:
     """Hits of one stone, each with its rank among all."""
     return [(rank, c) for rank, c in enumerate(collisions, 1) if stone in c.stones]
 
@@ -178,13 +205,18 @@ def line(label: str, **style: Any) -> Line2D:
     return Line2D([], [], label=label, **style)
 
 
-def legend_below(figure: Figure, handles: Sequence[Artist]) -> int:
-    """Put a legend under the figure in as many columns as it has room for; return its rows."""
+def legend_below(figure: Figure, handles: Sequence[Artist], ax: Axes | None = None) -> int:
+    """Put a legend under the figure, or under `ax`, in columns; return the number of its rows."""
     widths = [0.5 + 0.066 * len(str(handle.get_label())) for handle in handles]
-    room = float(figure.get_figwidth()) - 0.2
+    own = figure.get_figwidth() if ax is None else ax.get_window_extent().width / figure.dpi
+    room = float(own) - 0.2
     columns = len(handles) if sum(widths) < room else int(room / max(widths))
     columns = max(1, min(len(handles), columns))
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, columnspacing=1.2)
+    look: dict[str, Any] = {"handles": handles, "ncols": columns, "columnspacing": 1.2}
+    if ax is None:
+        figure.legend(loc="outside lower center", **look)
+    else:  # the pad, in letters, leaves room for ticks and a label
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=4.5, **look)
     return -(-len(handles) // columns)
 
 

@@ -11,17 +11,25 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse
 
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.data.sheet import SHEET, STONE, House
-from curlshot.physics.simulator.simulation import Hit
+from curlshot.physics.simulator.simulation import HitEvent
 from curlshot.report.figures.labels import name_stones
-from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, rows_of, title
+from curlshot.report.figures.parts import (
+    WIDTH,
+    Array,
+    OnAxes,
+    legend_below,
+    line,
+    panels,
+    rows_of,
+    title,
+)
 from curlshot.report.style import (
     BLACK,
     GREY,
     RING_FILLS,
     model_lines,
-    new_figure,
     plain_text,
     stone_colours,
     styled,
@@ -44,10 +52,11 @@ _ENLARGED = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 def plan_figure(
     tracks: pd.DataFrame,
     simulations: Mapping[str, pd.DataFrame] | None = None,
-    collisions: Sequence[Collision] = (),
+    collisions: Sequence[Hit] = (),
     *,
     house: House | None,
     radius: float = STONE.radius,
+    on: OnAxes = None,
 ) -> Figure:
     """Draw the sheet from above: house, measured and simulated paths, hits, last places.
 
@@ -62,12 +71,14 @@ def plan_figure(
     simulations : mapping of str to DataFrame, optional
         Sampled simulation of each model; their last places are drawn as empty circles, of stones
         that were last seen under way those at that time.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         The hits, a cross where the stones touched.
     house : House or None
         The rings to draw; None where the scene has no house.
     radius : float
         Radius of the stones, m.
+    on : Axes, optional
+        Where to draw; a figure of its own without.
     """
     stones = sorted(str(name) for name in tracks["stone"].unique())
     under_way = [name for name in stones if last_speed(rows_of(tracks, name))]
@@ -83,7 +94,8 @@ def plan_figure(
     low, high = _extent(tracks, simulations, moved, last, house, radius)
     rows_below = 1 + (4 + len(lines)) // 3
     with styled():
-        figure, ax, scale = new_sheet(low, high, rows_below)
+        figure, ax, scale = new_sheet(low, high, rows_below, on)
+        given = None if on is None else ax
         if house is not None:
             draw_house(ax, house, low, high, play(tracks, collisions, radius))
         for model, table in simulations.items():
@@ -104,10 +116,10 @@ def plan_figure(
         for collision in collisions:
             ax.plot(*contact_place(collision, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
         name_stones(ax, last, colours, radius, scale)
-        title(figure, "Plan view")
+        title(figure, "Plan view", given)
         handles = _handles(bool(moved), lines, bool(collisions), bool(under_way), factor)
         if handles:
-            legend_below(figure, handles)
+            legend_below(figure, handles, given)
     return figure
 
 
@@ -128,7 +140,7 @@ def _handles(
         handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
     if under_way:
         shaft: dict[str, Any] = {"marker": r"$\rightarrow$", "ls": "none", "ms": 11, "mew": 0}
-        handles.append(line("last seen under way", color=GREY, **shaft))
+        handles.append(line("last detected, moving", color=GREY, **shaft))
     if factor:
         by = "" if factor == 1 else f", {factor} × enlarged"
         shade: dict[str, Any] = {"color": GREY, "marker": "o", "ls": "none", "alpha": 0.5}
@@ -136,14 +148,21 @@ def _handles(
     return handles
 
 
-def new_sheet(low: Array, high: Array, rows_below: int) -> tuple[Figure, Axes, float]:
+def new_sheet(
+    low: Array, high: Array, rows_below: int, on: OnAxes = None
+) -> tuple[Figure, Axes, float]:
     """Give a figure of the ice between two corners, m, over so many rows of legend, and inches a m.
 
+    Axes that are given keep their size, and the ice is fitted in.
     For use within `curlshot.report.style.styled`.
     """
     scale = min((WIDTH - 0.75) / (high[0] - low[0]), _TALLEST / (high[1] - low[1]))
-    figure = new_figure(WIDTH, scale * (high[1] - low[1]) + 0.85 + 0.2 * rows_below)
-    ax = figure.subplots()
+    height = scale * float(high[1] - low[1]) + 0.85 + 0.2 * rows_below
+    figure, grid = panels(on, WIDTH, height)
+    ax = grid[0, 0]
+    if on is not None:
+        box = ax.get_window_extent()
+        scale = min(np.array([box.width, box.height]) / figure.dpi / (high - low))
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     ax.set(xlabel="$x$ (m)", ylabel="$y$ (m)")
     ax.grid(False)
@@ -212,7 +231,7 @@ def _draw_ellipses(
     return factor
 
 
-def _way(track: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Array:
+def _way(track: pd.DataFrame, stone: str, collisions: Sequence[Hit]) -> Array:
     """Path of a stone, x and y: where it was seen, and where it was as it hit another."""
     hits = [(hit.t, hit.before[stone]) for hit in collisions if stone in hit.before]
     t, x, y = track[["t", "x", "y"]].to_numpy(float).T
@@ -225,7 +244,7 @@ def _way(track: pd.DataFrame, stone: str, collisions: Sequence[Collision]) -> Ar
     )
 
 
-def contact_place(collision: Collision | Hit, radius: float) -> Array:
+def contact_place(collision: Hit | HitEvent, radius: float) -> Array:
     """Where two stones touched, m; NaN where neither's place is told."""
     first, second = collision.stones
     n = np.array(collision.normal)

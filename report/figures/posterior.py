@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from curlshot.data.results import Joint
-from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, title
+from curlshot.data.results import JointEstimate
+from curlshot.report.figures.parts import WIDTH, Array, OnAxes, legend_below, line, panels, title
 from curlshot.report.numbers import plus_minus
-from curlshot.report.style import BLUE, GREY, PALE, new_figure, styled
+from curlshot.report.style import BLUE, GREY, PALE, styled
 
 NAMES = {
     "restitution": "$e$",
@@ -28,7 +28,9 @@ _LEVELS = (1.0, 2.0)
 _MOST_DOTS = 2000
 
 
-def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) -> Figure:
+def posterior_figure(
+    laws: JointEstimate | None, samples: pd.DataFrame | None = None, on: OnAxes = None
+) -> Figure:
     """Distribution of restitution and frictions: each alone on the diagonal, pairs below it.
 
     Lines are the normal distribution that values and covariance stand for, with ellipses of
@@ -36,10 +38,12 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
 
     Parameters
     ----------
-    laws : Joint or None
+    laws : JointEstimate or None
         Values and covariance of some of ``restitution, friction, stone_friction``.
     samples : DataFrame, optional
         A column for each, a row a sample.
+    on : sequence of Axes, optional
+        Where to draw, a square of panels, a row for each; a figure of its own without.
 
     Raises
     ------
@@ -52,12 +56,12 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
     )
     names = [name for name in NAMES if name in known]
     if not names:
-        raise ValueError("neither laws nor samples: nothing to draw")
+        raise ValueError("neither a shot fit nor samples: nothing to draw")
     ranges = {name: _range(name, laws, samples) for name in names}
     count = len(names)
     with styled():
-        figure = new_figure(WIDTH, 1.0 + 1.55 * count)
-        grid = figure.subplots(count, count, squeeze=False, sharex="col")
+        figure, grid = panels(on, WIDTH, 1.0 + 1.55 * count, count, count, sharex="col")
+        first, last = (None, None) if on is None else grid[[0, -1], 0]
         for i, below in enumerate(names):
             for j, across in enumerate(names):
                 ax = grid[i, j]
@@ -79,17 +83,17 @@ def posterior_figure(laws: Joint | None, samples: pd.DataFrame | None = None) ->
                     ax.tick_params(labelleft=False)
                 if j < i:  # the lines of a row are those of its numbers at the left
                     ax.locator_params(axis="y", nbins=4)
-        title(figure, "Restitution and friction: how well they are known")
+        title(figure, "Joint uncertainty of restitution and friction", first)
         handles = []
         if laws is not None:
             handles.append(line("fit: 1 and 2 standard deviations", color=BLUE))
         if samples is not None:
             handles.append(line("samples", color=GREY, marker="s", ls="none", mew=0))
-        legend_below(figure, handles)
+        legend_below(figure, handles, last)
     return figure
 
 
-def _part(laws: Joint | None, names: list[str]) -> tuple[Array, Array] | None:
+def _part(laws: JointEstimate | None, names: list[str]) -> tuple[Array, Array] | None:
     """Values and covariance of some unknowns, None where not all of them are known."""
     if laws is None or not set(names) <= set(laws.names):
         return None
@@ -97,7 +101,9 @@ def _part(laws: Joint | None, names: list[str]) -> tuple[Array, Array] | None:
     return np.array(laws.values)[at], np.array(laws.cov)[np.ix_(at, at)]
 
 
-def _range(name: str, laws: Joint | None, samples: pd.DataFrame | None) -> tuple[float, float]:
+def _range(
+    name: str, laws: JointEstimate | None, samples: pd.DataFrame | None
+) -> tuple[float, float]:
     ends: list[float] = []
     part = _part(laws, [name])
     if part is not None:
@@ -113,7 +119,7 @@ def _draw_one(
     ax: Axes,
     name: str,
     limits: tuple[float, float],
-    laws: Joint | None,
+    laws: JointEstimate | None,
     samples: pd.DataFrame | None,
 ) -> None:
     ax.set_yticks([])
@@ -135,7 +141,7 @@ def _draw_one(
 
 
 def _draw_two(
-    ax: Axes, across: str, below: str, laws: Joint | None, samples: pd.DataFrame | None
+    ax: Axes, across: str, below: str, laws: JointEstimate | None, samples: pd.DataFrame | None
 ) -> None:
     if samples is not None and {across, below} <= set(samples.columns):
         dots: dict[str, Any] = {"color": GREY, "ms": 2, "alpha": 0.4, "mew": 0}

@@ -10,9 +10,19 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from curlshot.data.results import Collision, Misfit
-from curlshot.report.figures.parts import WIDTH, Array, legend_below, line, short, time_axis, title
-from curlshot.report.style import BLACK, GREY, PALE, new_figure, stone_colours, styled
+from curlshot.data.results import Hit, TrackResidual
+from curlshot.report.figures.parts import (
+    WIDTH,
+    Array,
+    OnAxes,
+    legend_below,
+    line,
+    panels,
+    short,
+    time_axis,
+    title,
+)
+from curlshot.report.style import BLACK, GREY, PALE, stone_colours, styled
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -35,8 +45,9 @@ _MOST_NAMED = 12
 
 def residuals_figure(
     residuals: pd.DataFrame,
-    collisions: Sequence[Collision] = (),
-    misfits: Sequence[Misfit] = (),
+    collisions: Sequence[Hit] = (),
+    misfits: Sequence[TrackResidual] = (),
+    on: OnAxes = None,
 ) -> Figure:
     """Sighted less smoothed places against time, and how they are distributed.
 
@@ -49,17 +60,19 @@ def residuals_figure(
     residuals : DataFrame
         ``stone, t, dx, dy, sd_x, sd_y``, m and s, as `curlshot.report.tables.residual_table` makes
         it.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         All hits of the shot, in order.
-    misfits : sequence of Misfit
+    misfits : sequence of TrackResidual
         Of the fit of the whole shot; bars along the top show what it left out.
+    on : sequence of Axes, optional
+        Where to draw, two by two panels; a figure of its own without.
     """
     stones = sorted(str(name) for name in residuals["stone"].unique())
     colours = stone_colours(stones)
-    left_out = [one for one in misfits if one.left_out and one.stone in colours]
+    left_out = [one for one in misfits if one.downweighted and one.stone in colours]
     with styled():
-        figure = new_figure(WIDTH, 4.2)
-        grid = figure.subplots(2, 2, sharex="col", width_ratios=[3, 1])
+        figure, grid = panels(on, WIDTH, 4.2, 2, 2, sharex="col", width_ratios=[3, 1])
+        first, last = (None, None) if on is None else grid[:, 0]
         for row, axis in zip(grid, "xy", strict=True):
             off, sd = residuals[[f"d{axis}", f"sd_{axis}"]].to_numpy(float).T
             _draw_times(row[0], residuals, 1000 * off, 1000 * float(np.median(sd)), colours)
@@ -77,19 +90,19 @@ def residuals_figure(
             residuals["t"].to_numpy(float),
         )
         figure.align_ylabels(grid[:, 0])
-        title(figure, "Residuals: sighted less smoothed places")
+        title(figure, "Residuals: detections minus smoothed places", first)
         handles: list[Artist] = [
             line(f"stone {short(name)}", color=colours[name], marker="o", ms=3, ls="none")
             for name in stones[:_MOST_NAMED]
         ]
         handles += [
-            line("± 2 sd as stated", color=PALE, alpha=_BAND, lw=6),
-            line("beyond the edge", color=BLACK, marker=6, ms=4, ls="none"),
+            line("± 2 sd, as estimated", color=PALE, alpha=_BAND, lw=6),
+            line("outside the plot", color=BLACK, marker=6, ms=4, ls="none"),
             line("normal distribution", color=BLACK),
         ]
         if left_out:
-            handles.append(line("left out of the whole shot", color=PALE, lw=4))
-        legend_below(figure, handles)
+            handles.append(line("down-weighted in the shot fit", color=PALE, lw=4))
+        legend_below(figure, handles, last)
     return figure
 
 

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from curlshot.data.sheet import STONE, House
-from curlshot.physics.simulator.simulation import Hit
+from curlshot.physics.simulator.simulation import HitEvent
 from curlshot.report.figures.labels import name_stones
-from curlshot.report.figures.parts import Array, legend_below, line, rows_of, title
+from curlshot.report.figures.parts import Array, OnAxes, legend_below, line, rows_of, title
 from curlshot.report.figures.plan import contact_place, draw_house, new_sheet, pair, thickened
 from curlshot.report.numbers import count, fixed
 from curlshot.report.style import BLACK, GREY, plain_text, stone_colours, styled
@@ -24,12 +24,13 @@ FAR = 6.4
 
 def simulated_figure(
     table: pd.DataFrame,
-    hits: Sequence[Hit] = (),
+    hits: Sequence[HitEvent] = (),
     *,
     gone: Collection[str] = (),
     house: House | None,
     radius: float = STONE.radius,
     play: int = -1,
+    on: OnAxes = None,
 ) -> Figure:
     """Draw a simulated shot from above.
 
@@ -39,7 +40,7 @@ def simulated_figure(
     ----------
     table : DataFrame
         ``stone, t, x, y`` of the shot until all is at rest.
-    hits : sequence of Hit
+    hits : sequence of HitEvent
         A cross where the stones touched.
     gone : collection of str
         Stones that leave the sheet where their paths end.
@@ -49,6 +50,8 @@ def simulated_figure(
         Radius of the stones, m.
     play : int
         1 where stones are thrown up y, -1 where down: behind the tee is the back line.
+    on : Axes, optional
+        Where to draw; a figure of its own without.
     """
     paths = {
         str(name): rows_of(table, str(name))[["x", "y"]].to_numpy(float)
@@ -61,7 +64,8 @@ def simulated_figure(
     far = [name for name, end in ends.items() if not ((low < end) & (end < high)).all()]
     colours = stone_colours(paths)
     with styled():
-        figure, ax, scale = new_sheet(low, high, 1 + (2 + len(far)) // 2)
+        figure, ax, scale = new_sheet(low, high, 1 + (2 + len(far)) // 2, on)
+        given = None if on is None else ax
         if house is not None:
             draw_house(ax, house, low, high, play)
         for name, path in paths.items():
@@ -73,8 +77,8 @@ def simulated_figure(
         for hit in hits:
             ax.plot(*contact_place(hit, radius), "x", color=BLACK, ms=6, mew=1.6, zorder=6)
         name_stones(ax, shown, colours, radius, scale)
-        title(figure, f"Simulated: {count(len(paths), 'stone')}, {count(len(hits), 'hit')}")
-        handles = [line("where it began", color=GREY, marker="o", mfc="none", ls="none", ms=8)]
+        title(figure, f"Simulated: {count(len(paths), 'stone')}, {count(len(hits), 'hit')}", given)
+        handles = [line("start", color=GREY, marker="o", mfc="none", ls="none", ms=8)]
         if hits:
             handles.append(line("hit", color=BLACK, marker="x", ls="none", mew=1.6))
         handles += [
@@ -82,7 +86,7 @@ def simulated_figure(
             for name, end in ends.items()
             if name in far or name in gone
         ]
-        legend_below(figure, handles)
+        legend_below(figure, handles, given)
     return figure
 
 
@@ -91,7 +95,7 @@ def _told(name: str, end: Array, far: bool, gone: bool) -> str:
     place = f"({fixed(end[0], 1)}, {fixed(end[1], 1)}) m"
     if gone:
         return f"{name} leaves the sheet{f' at {place}' if far else ''}"
-    return f"{name} goes on to {place}"
+    return f"{name} continues to {place}"
 
 
 def _near(place: Array, centre: Array) -> bool:

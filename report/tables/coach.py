@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision, MeasuredState
+from curlshot.data.results import Hit, MeasuredState
 from curlshot.data.sheet import SHEET, STONE
 from curlshot.physics.prediction.throws import STILL, thrown
 from curlshot.report.tables.shot import moving_stones
@@ -18,7 +18,7 @@ from curlshot.report.tables.states import magnitude
 
 
 def speed_table(
-    tracks: pd.DataFrame, collisions: Sequence[Collision], radius: float = STONE.radius
+    tracks: pd.DataFrame, collisions: Sequence[Hit], radius: float = STONE.radius
 ) -> pd.DataFrame:
     """Speed of the thrown stone at the lines, and of every stone before and after its hits.
 
@@ -44,7 +44,7 @@ def speed_table(
     return pd.DataFrame(rows, columns=["stone", "at", "t", "speed", "sd", "note"])
 
 
-def takeout_table(collisions: Sequence[Collision]) -> pd.DataFrame:
+def takeout_table(collisions: Sequence[Hit]) -> pd.DataFrame:
     """Tell what each hit took from the stone that came and gave to the one that was struck.
 
     Returns
@@ -83,10 +83,10 @@ def _crossing(track: pd.DataFrame, line: float, side: float) -> dict[str, object
     t, y, vx, vy, sx, sy = track[["t", "y", "vx", "vy", "sd_vx", "sd_vy"]].to_numpy(float).T
     ahead = side * (y - line)
     if ahead[0] < 0:
-        return {"note": f"first seen {abs(y[0] - line):.1f} m past it"}
+        return {"note": f"first detected {abs(y[0] - line):.1f} m past it"}
     past = np.flatnonzero(ahead <= 0)
     if not len(past):
-        return {"note": f"came no nearer than {ahead.min():.1f} m, as far as was seen"}
+        return {"note": f"came no closer than {ahead.min():.1f} m in the measured interval"}
     k = max(int(past[0]), 1)
     share = ahead[k - 1] / max(ahead[k - 1] - ahead[k], 1e-12)
     speed, sd = magnitude(vx, vy, sx, sy)

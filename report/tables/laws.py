@@ -25,7 +25,7 @@ def law_table(results: Results) -> pd.DataFrame:
         ``quantity, symbol, value, stderr, literature, stderr_literature, low, high, source``.
     """
     curling = curling_size(results.radius)
-    laws = results.laws
+    laws = results.joint_estimate
     rows: list[dict[str, object]] = [
         {"quantity": "coefficient of restitution", "symbol": "e", **vars(results.restitution)},
         {
@@ -99,7 +99,7 @@ def choice_table(results: Results) -> pd.DataFrame:
             "friction": law.friction.value,
             "stderr": law.friction.stderr,
         }
-        for law in sorted(results.law_choice, key=lambda law: law.criterion)
+        for law in sorted(results.model_selection, key=lambda law: law.criterion)
     ]
     return pd.DataFrame(rows, columns=["laws", "weight", "criterion", "friction", "stderr"])
 
@@ -118,8 +118,8 @@ def ice_table(results: Results) -> pd.DataFrame:
             "stone": name,
             "friction": stone.friction.value,
             "sd_friction": stone.friction.stderr,
-            "turn": stone.turn.value,
-            "sd_turn": stone.turn.stderr,
+            "turn": stone.turn_rate.value,
+            "sd_turn": stone.turn_rate.stderr,
             "speed": stone.speed,
             "spin": stone.spin.value,
             "sd_spin": stone.spin.stderr,

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision
+from curlshot.data.results import Hit
 from curlshot.data.sheet import HOUSE, STONE, House
 from curlshot.physics.prediction.throws import STILL, thrown
 from curlshot.report.tables.shot import moving_stones
@@ -32,7 +32,7 @@ POOR_CURL = 0.1
 
 def rest_table(
     tracks: pd.DataFrame,
-    collisions: Sequence[Collision] = (),
+    collisions: Sequence[Hit] = (),
     house: House = HOUSE,
     radius: float = STONE.radius,
 ) -> pd.DataFrame:
@@ -136,19 +136,19 @@ def shot_stone(rest: pd.DataFrame) -> tuple[str | None, str]:
     names = ", ".join(unknown["stone"])
     nearest = inside["to_tee"].min() + 2 * inside["sd_to_tee"].max()
     if len(unknown) and not (unknown["beyond"] > nearest).all():
-        return None, f"where {names} stopped is not known"
+        return None, f"the last places of {names} are unknown"
     if inside.empty:
         return None, "no stone is in the house"
     if len(inside) > 1:
         near, far = inside.iloc[0], inside.iloc[1]
         error = float(np.hypot(near["sd_to_tee"], far["sd_to_tee"]))
         if far["to_tee"] - near["to_tee"] < 2 * error and _rivals(near["team"], far["team"]):
-            return None, f"{near['stone']} and {far['stone']} are too close to tell"
+            return None, f"{near['stone']} and {far['stone']} are too close to separate"
     best = inside.iloc[0]
     if len(unknown):
         return str(best["stone"]), f"{names} still moved, farther from the tee and away from it"
     if best["team"] is None:
-        return str(best["stone"]), "teams are not known"
+        return str(best["stone"]), "the teams are unknown"
     others = (inside["team"] != best["team"]).to_numpy()
     count = int(np.argmax(others)) if others.any() else len(others)
     return str(best["stone"]), f"{best['team']} lies {count}"
@@ -161,7 +161,7 @@ def _rivals(one: object, two: object) -> bool:
 def _turns(track: pd.DataFrame, notes: list[str]) -> dict[str, object]:
     seen = track[track["theta"].notna()]
     if len(seen) < 2:
-        notes.append("how it turned was not seen")
+        notes.append("its rotation was not measured")
         return {}
     theta, sd = seen[["theta", "sd_theta"]].to_numpy(float).T
     error = float(np.hypot(sd[0], sd[-1])) / (2 * np.pi)
@@ -172,7 +172,7 @@ def _curl(track: pd.DataFrame, notes: list[str]) -> dict[str, object]:
     """Distance by which a stone came to lie left of the line on which it set out."""
     early = track[track["t"] <= track["t"].iloc[0] + HEADING] if len(track) else track
     if len(early) < 3:
-        notes.append("curl: seen too briefly before it was hit")
+        notes.append("curl: measured too briefly before its hit")
         return {}
     heading = early[["vx", "vy"]].to_numpy(float).mean(axis=0)
     speed = float(np.hypot(*heading))
@@ -183,7 +183,7 @@ def _curl(track: pd.DataFrame, notes: list[str]) -> dict[str, object]:
     place = float(track[["sd_x", "sd_y"]].iloc[[0, -1]].to_numpy(float).mean())
     error = float(np.hypot(turn * np.hypot(dx, dy), np.sqrt(2) * place))
     if not error < POOR_CURL:
-        notes.append(f"curl: {np.hypot(dx, dy):.1f} m of way is too short to tell")
+        notes.append(f"curl: a path of {np.hypot(dx, dy):.1f} m is too short")
         return {}
     # The mean velocity of the first seconds is that of their middle.
     return {"curl": float(ux * dy - uy * dx), "sd_curl": error}
@@ -204,7 +204,7 @@ def _moving(track: pd.DataFrame, end: float) -> str | None:
     when = float(track["t"].iloc[-1])
     if end - when > UNSEEN:
         return f"out of sight after {when:.1f} s, at {speed:.2f} m/s"
-    return f"still moves at {speed:.2f} m/s as the clip ends"
+    return f"still moving at {speed:.2f} m/s at the end of the clip"
 
 
 def _away(track: pd.DataFrame) -> float:

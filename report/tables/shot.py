@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision, Glide, Prediction, SimulationScore
+from curlshot.data.results import Glide, Hit, Prediction, SimulationScore
 from curlshot.data.sheet import STONE
 from curlshot.physics.local_fit.off_centre import centred
 from curlshot.physics.local_fit.traces import traces
@@ -15,7 +15,7 @@ from curlshot.physics.prediction.throws import thrown
 
 
 def moving_stones(
-    tracks: pd.DataFrame, collisions: Sequence[Collision] = (), radius: float = STONE.radius
+    tracks: pd.DataFrame, collisions: Sequence[Hit] = (), radius: float = STONE.radius
 ) -> tuple[str, ...]:
     """Names of the stones that moved: in a hit, or by more than a third of the radius."""
     hit = {name for collision in collisions for name in collision.stones}
@@ -31,9 +31,7 @@ def moving_stones(
     return tuple(moved)
 
 
-def play(
-    tracks: pd.DataFrame, collisions: Sequence[Collision] = (), radius: float = STONE.radius
-) -> int:
+def play(tracks: pd.DataFrame, collisions: Sequence[Hit] = (), radius: float = STONE.radius) -> int:
     """Tell which way stones are thrown: 1 if up y, -1 if down or if none is seen to come."""
     for name in moving_stones(tracks, collisions, radius):
         track = tracks[tracks["stone"] == name].sort_values("t")
@@ -79,7 +77,7 @@ def stone_table(tracks: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def hit_table(collisions: Sequence[Collision]) -> pd.DataFrame:
+def hit_table(collisions: Sequence[Hit]) -> pd.DataFrame:
     """One row per hit with all that was derived from it."""
     return pd.DataFrame(
         [
@@ -139,7 +137,7 @@ def scored_stones(scores: Mapping[str, SimulationScore] | Mapping[str, Predictio
 def residual_table(
     detections: pd.DataFrame,
     tracks: pd.DataFrame,
-    collisions: Sequence[Collision] = (),
+    collisions: Sequence[Hit] = (),
     radius: float = STONE.radius,
 ) -> pd.DataFrame:
     """Sighted less smoothed places, one row per detection.
@@ -150,7 +148,7 @@ def residual_table(
         `curlshot.data.tracks.DETECTION_COLUMNS`.
     tracks : DataFrame
         `curlshot.data.tracks.TRACK_COLUMNS`, smoothed from them.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         The hits.
     radius : float
         Of the discs, m.

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from curlshot.data.results import Collision, MeasuredState, SimulatedHit, SimulationScore
+from curlshot.data.results import Hit, MeasuredState, SimulatedHit, SimulationScore
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def magnitude(x: Array, y: Array, sd_x: Array, sd_y: Array) -> tuple[Array, Arra
     return length, np.where(short, np.fmax(sd_x, sd_y), along)
 
 
-def measured_table(collisions: Sequence[Collision]) -> pd.DataFrame:
+def measured_table(collisions: Sequence[Hit]) -> pd.DataFrame:
     """Place, velocity and spin of both stones before and after each hit (the paper's Table 2).
 
     Returns
@@ -63,7 +63,7 @@ def measured_table(collisions: Sequence[Collision]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def simulated_table(score: SimulationScore, collisions: Sequence[Collision]) -> pd.DataFrame:
+def simulated_table(score: SimulationScore, collisions: Sequence[Hit]) -> pd.DataFrame:
     """Return the same hits in a simulation (the paper's Tables 3 and 4).
 
     The k-th hit of two stones is the k-th measured one of them. A hit that the simulation does
@@ -73,7 +73,7 @@ def simulated_table(score: SimulationScore, collisions: Sequence[Collision]) -> 
     ----------
     score : SimulationScore
         Of one model, with its hits.
-    collisions : sequence of Collision
+    collisions : sequence of Hit
         The measured hits, which say what to look for.
 
     Returns
@@ -94,7 +94,7 @@ def simulated_table(score: SimulationScore, collisions: Sequence[Collision]) -> 
 
 
 def _state_rows(
-    rank: int | None, stones: tuple[str, str], hit: Collision | SimulatedHit | None
+    rank: int | None, stones: tuple[str, str], hit: Hit | SimulatedHit | None
 ) -> list[dict[str, object]]:
     rows = []
     for stone in stones:

@@ -41,14 +41,14 @@ def test_a_table_that_goes_across_a_sheet_has_none(across: bool) -> None:
     glide = glide.assign(sd_x=0.0003, sd_y=0.0003, sd_place_x=0.0, sd_place_y=0.0)
     glide = glide.reindex(columns=list(DETECTION_COLUMNS))
     done = analyse(Measurement((Path("glide.csv"),), glide, 25.0, 50, (), house=HOUSE))
-    assert (done.house is None, done.results.sheet) == (across, not across)
+    assert (done.house is None, done.results.origin_at_tee) == (across, not across)
     assert any("put the origin on the tee" in text for text in done.results.warnings) == across
 
 
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        (Config(), "`house` points at another"),
+        (Config(), "`house` corrects it"),
         (Config().replace(stick=(1.0, 1.0, 90.0, 1.0, 0.5)), "check `radius` and `stick`"),
         (Config().replace(camera=Path("camera.csv")), "check `radius` and `camera`"),
     ],

@@ -24,7 +24,7 @@ def test_what_is_taken_for_the_tee_is_said(
     table, out = str(glide(tmp_path / "a.csv")), str(tmp_path / "out")
     assert main(["run", table, "-q", "-o", out]) == 0
     said = capsys.readouterr().out
-    assert "house       the origin is taken for its tee (--no-house if it is not)" in said
+    assert "house       the origin is assumed to be its tee (--no-house if it is not)" in said
     assert "shot stone" in said
     assert main(["run", table, "-q", "-o", out, "--no-house"]) == 0
     said = capsys.readouterr().out

@@ -175,7 +175,7 @@ def test_single_picture_gives_positions_only(
     assert score.rmse < 0.03
     assert done.tracks["vx"].isna().all()
     assert main(["simulate", str(tmp_path / "out")]) == 2
-    assert "no shot is known" in capsys.readouterr().err
+    assert "no shot to reconstruct" in capsys.readouterr().err
     assert done.results.restitution.value is None
     assert done.results.friction.value is None
     assert done.results.warnings
@@ -340,7 +340,7 @@ def bad_inputs(folder: Path) -> dict[str, list[str | Path]]:
         "no number": ["simulate", folder / "good.toml", "--speed", "fast"],
         "no speed": ["simulate", folder / "good.toml", "--speed", "0"],
         "no restitution": ["simulate", folder / "good.toml", "--restitution", "1.2"],
-        "no friction": ["simulate", folder / "good.toml", "--friction", "nan"],
+        "not used for friction": ["simulate", folder / "good.toml", "--friction", "nan"],
         "no aim": ["simulate", folder / "good.toml", "--aim-offset", "left"],
         "no spin": ["simulate", folder / "good.toml", "--spin", "1y"],
         "no samples": ["simulate", folder / "good.toml", "--samples", "1e9"],
@@ -381,7 +381,7 @@ def test_a_house_or_a_camera_may_be_given(
     assert main(["track", *common, str(tmp_path / "one"), "--house", house]) == 0
     table = tmp_path / "one" / "camera.csv"
     assert main(["track", *common, str(tmp_path / "two"), "--camera", str(table)]) == 0
-    assert "not part of the errors" in capsys.readouterr().out
+    assert "do not include that of the given camera" in capsys.readouterr().out
     one, two = (pd.read_csv(tmp_path / name / "tracks.csv") for name in ("one", "two"))
     assert len(one) == len(two) and one["frame"].nunique() == 9
     # The one's stones were measured while its cameras were provisional.
@@ -533,7 +533,7 @@ def test_convert_does_not_write_over_its_input(
     table.write_text("stone,t,x,y\nA,0,0,0\nA,0.04,0.1,0\n")
     before = table.read_bytes()
     folder.mkdir()
-    for out, why in ((table, "is what is to be converted"), (folder, "is a folder")):
+    for out, why in ((table, "is the file to convert"), (folder, "is a folder")):
         assert main(["convert", str(table), str(out)]) == 2
         assert f"{out}: {why}" in capsys.readouterr().err
     assert main(["convert", str(table), str(table / "c.csv")]) == 2

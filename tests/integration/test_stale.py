@@ -77,7 +77,7 @@ def test_a_run_does_not_write_over_its_own_input(folder, capsys):
     tracks = folder / "tracks.csv"
     before = tracks.read_bytes()
     assert main(["run", str(tracks), "-o", str(folder), "-q"]) == 2
-    assert "would be written over" in capsys.readouterr().err
+    assert "would be overwritten" in capsys.readouterr().err
     assert tracks.read_bytes() == before
 
 

@@ -40,7 +40,10 @@ def test_a_project_has_tabs_as_a_clip_and_as_a_camera() -> None:
         ({"fps": float("inf")}, "fps: inf is not a positive number"),
         ({"stick": (1.0, 2.0, 1.0, 2.0, 0.5)}, "has no length"),
         ({"camera_height": 0.5}, "camera_height: 0.5 is not a height in metres, 1 to 100"),
-        ({"camera_height": 5.0, "camera": "c.csv"}, "`camera_height` is of a camera found by its"),
+        (
+            {"camera_height": 5.0, "camera": "c.csv"},
+            "`camera_height` belongs to a camera found by its",
+        ),
         ({"length_unit": "furlong"}, "length_unit 'furlong': one of m, cm"),
         ({"angle_unit": "turn"}, "angle_unit 'turn': one of rad, deg"),
         ({"units": "yd"}, "units 'yd': one of m, ft"),

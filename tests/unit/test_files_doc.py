@@ -20,7 +20,7 @@ from curlshot.vision.optics.camera import CAMERA_COLUMNS
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "files.md").read_text("utf-8")
 OTHERS = {
     "schema", "model", "sample", "hits", "start", "shots", "input", "thrown", "changes", "samples",
-    "throw_sd", "direction", "warnings", "size", "inertia", "loss", "local", "global",
+    "throw_sd", "direction", "warnings", "size", "inertia", "loss", "local", "shot_fit",
     "finite-differences", "constant", "fit", "sd_", "--samples", "#rrggbb", "curlshot simulate",
     "SHOT.toml",
 }  # fmt: skip

@@ -38,8 +38,8 @@ def seen_late(rest: Mapping[str, Track], cameras: Sequence[Camera], disc: Stone)
         before = bisect_right(times, track.times[0] - LATE)
         if before and _in_view(cameras[before - 1], track, disc):
             out.append(
-                f"{name} is first seen at {track.times[0]:.1f} s, at rest: whether it lay there or"
-                " how it came there is not seen, nor any hit before"
+                f"{name} is first detected at {track.times[0]:.1f} s, at rest: its earlier motion"
+                " and hits are unknown"
             )
     return tuple(out)
 

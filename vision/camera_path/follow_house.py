@@ -327,9 +327,8 @@ def follow_house(
     progress("camera", 1, 1)
     if track is None:
         raise SceneError(
-            f"{video.files[0]}: no house in view (it is known by two of its circles or more);"
-            " point at it with `house`, or for another scene with a still camera use"
-            " `stick`"
+            f"{video.files[0]}: no house in view (two of its circles must be visible); give its"
+            " place with `house`, or for another scene with a fixed camera use `stick`"
         )
     return track
 
@@ -344,7 +343,7 @@ def _left_out(best: Piece, pieces: Sequence[Piece], which: str) -> tuple[str, ..
         return ()
     others = ", ".join(_span(piece) for piece in pieces if piece is not best)
     return (
-        f"the house is shown in {len(pieces)} separate pieces; only {which} is used, frames"
+        f"the house is visible in {len(pieces)} separate parts; only {which} is used, frames"
         f" {_span(best)}; left out: {others}",
     )
 
@@ -357,7 +356,7 @@ def _unseen(pieces: Sequence[Piece], looked: Sequence[int]) -> tuple[str, ...]:
     if not gaps:
         return ()
     shown = gaps if len(gaps) <= MOST_SPANS else [*gaps[:MOST_SPANS], "…"]
-    return (f"the house is not made out in frames {', '.join(shown)}; they are left out",)
+    return (f"the house is not found in frames {', '.join(shown)}; they are left out",)
 
 
 def _span(piece: Piece) -> str:

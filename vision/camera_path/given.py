@@ -127,10 +127,10 @@ def hypotheses(house: GivenHouse, size: tuple[int, int]) -> list[Guess]:
     points = np.vstack([house.tee, house.ring])
     reach = np.linalg.norm(house.ring - house.tee, axis=1)
     if not np.isfinite(points).all() or np.abs(points).max() > 10 * max(size):
-        raise InputError(f"house {house}: not in a picture of {size[0]} × {size[1]} px")
+        raise InputError(f"house {house}: outside a frame of {size[0]} × {size[1]} px")
     if reach.min() < SMALLEST * size[0]:
         raise InputError(
-            f"house {house}: the two points on the 12-ft circle need to be at least"
+            f"house {house}: the two points on the 12-ft circle must be at least"
             f" {SMALLEST * size[0]:.0f} px from the tee"
         )
     found = []
@@ -181,10 +181,10 @@ def _frame(video: Video, house: GivenHouse) -> Frame:
     if shown is not None and house.frame in video.duplicates:
         return shown
     if house.frame is None:
-        raise InputError(f"{video.files[0]}: none of the frames that are used can be read")
+        raise InputError(f"{video.files[0]}: none of the selected frames can be read")
     raise InputError(
-        f"house {house}: frame {house.frame} is not among those of {video.files[0].name} that are"
-        f" used, {video.first} to {video.first + video.expected - 1}"
+        f"house {house}: frame {house.frame} is not among the selected frames of"
+        f" {video.files[0].name}, {video.first} to {video.first + video.expected - 1}"
     )
 
 
@@ -219,11 +219,11 @@ def _as_given(
             placed(other, cameras[-1])
         progress("camera", done, video.expected)
     note = (
-        f"house {house}: no rings are seen there; the camera rests on the three points alone, y up"
-        " in the picture"
+        f"house {house}: no rings found there; the camera is set by the three points alone, with"
+        " y up in the frame"
     )
     if len(cameras) < video.read:
-        note += f", and only the {len(cameras)} frames with the same picture are used"
+        note += f", and only the {len(cameras)} frames with the same image are used"
     return replace(track, cameras=tuple(cameras), warnings=(note, *track.warnings))
 
 

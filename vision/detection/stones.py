@@ -221,15 +221,12 @@ def judge(seen: Measures, disc: Stone, search: Search) -> list[str]:
     else:
         beside = np.abs(seen.centre[:, 0]) > search.half_width - 0.4 * disc.radius
     for wrong, why in (
-        (beside, "beside the sheet"),
-        (seen.evidence + seen.excused < least, "too little of a stone about it"),
-        (
-            seen.shift > search.max_centre_shift_ratio * size,
-            "its edges are those of something else",
-        ),
-        (seen.visible < search.min_visible_ratio, "hardly any of it is seen"),
-        (hollow, "a ring with nothing in it"),
-        (~seen.ok, "no cap with granite around it" if not plain else "no circle of that size"),
+        (beside, "outside the sheet"),
+        (seen.evidence + seen.excused < least, "too little resemblance to a stone"),
+        (seen.shift > search.max_centre_shift_ratio * size, "its edges belong to something else"),
+        (seen.visible < search.min_visible_ratio, "barely visible"),
+        (hollow, "an empty ring"),
+        (~seen.ok, "no cap surrounded by granite" if not plain else "no circle of the right size"),
     ):
         faults[wrong] = why
     return [str(fault) for fault in faults]

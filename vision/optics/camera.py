@@ -187,7 +187,7 @@ class Camera:
             The camera's place is not known.
         """
         if self.position is None:
-            raise ValueError("the camera's place is not known")
+            raise ValueError("the position of the camera is unknown")
         xy = np.asarray(ice, float)
         away = np.concatenate([xy, np.full((*xy.shape[:-1], 1), height)], axis=-1) - self.position
         _, radius = projection.middle(self.size)

@@ -61,14 +61,14 @@ def given_cameras(
         progress("camera", done, video.expected)
     if not cameras:
         raise InputError(
-            f"{path}: has frames {min(row)} to {max(row)}, none of those of"
-            f" {video.files[0].name} that are used"
+            f"{path}: has frames {min(row)} to {max(row)}, none of the selected ones of"
+            f" {video.files[0].name}"
         )
-    notes = [f"{path.name}: how well the given camera is known is not part of the errors"]
+    notes = [f"{path.name}: the errors do not include that of the given camera"]
     if any(camera.position is None for camera in cameras):
         notes.append(
-            f"{path.name}: the camera's place is not given; stones away from the point below it"
-            " may be centimetres off, for their caps are above the ice"
+            f"{path.name}: the position of the camera is not given; since caps are above the ice,"
+            " stones away from the point below it may be centimetres wrong"
         )
     if len(cameras) < video.read:
         left = video.read - len(cameras)
@@ -119,11 +119,11 @@ def read_cameras(path: Path, columns: Sequence[str] = ()) -> pd.DataFrame:
     for wrong, what in (
         (~np.isfinite(matrices).all(1), "h33 is 0: the tee would be at the horizon"),
         (np.abs(area) < LEAST_AREA, "the homography is singular"),
-        (area < 0, "the homography is mirrored; x goes to the right and y up in the picture"),
-        (~(slope > 0), "k1 and k2 fold the picture"),
+        (area < 0, "the homography is mirrored; x goes to the right and y up in the frame"),
+        (~(slope > 0), "k1 and k2 fold the image"),
         (low, "cam_z is not above the stones"),
         (~whole, "frame is not a whole number from 0"),
-        (doubled, "its frame was there before; one row per frame, please"),
+        (doubled, "a repeated frame; one row per frame"),
     ):
         if np.any(wrong):
             raise InputError(f"{path}: line {_line(np.asarray(wrong))}: {what}")
@@ -144,7 +144,7 @@ def _table(path: Path, columns: Sequence[str]) -> pd.DataFrame:
     text.columns = text.columns.str.strip()
     doubled = text.columns[text.columns.duplicated()]
     if len(doubled):
-        raise InputError(f"{path}: column {doubled[0]} is there twice")
+        raise InputError(f"{path}: column {doubled[0]} occurs twice")
     needed = HOMOGRAPHY if len(text) == 1 else ("frame", *HOMOGRAPHY)
     missing = [name for name in dict.fromkeys((*needed, *columns)) if name not in text]
     if missing:

@@ -45,7 +45,7 @@ def project_cameras(
     source = project.source
     if project.filters:
         raise InputError(
-            f"{source}: its calibration is of a video changed by filters"
+            f"{source}: its calibration belongs to a video changed by filters"
             f" ({', '.join(project.filters)}); they are not applied here, so it does not fit"
         )
     metres = LENGTH_UNITS[unit_of_lengths(project.length_unit, length_unit, source, "project")]
@@ -61,6 +61,6 @@ def project_cameras(
         placed(frame, cameras[-1])
         progress("camera", done, video.expected)
     return tuple(cameras), (
-        f"{source}: its calibration is a plain scale: neither perspective nor the height of what"
-        " is tracked are taken out, nor is its error part of the errors",
+        f"{source}: its calibration is a plain scale: perspective, the height of the caps and its"
+        " own error are not corrected for",
     )

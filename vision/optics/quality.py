@@ -109,32 +109,36 @@ def warnings(
     poor = [c.frame for c in cameras if c.found and c.quality < POOR]
     if len(poor) > POOR_SHARE * len(cameras):
         found.append(
-            f"in {len(poor)} of {len(cameras)} frames ({poor[0]} to {poor[-1]}) the model explains"
-            " little of the rings; look at the sheet of curlshot check before trusting it"
+            f"in {len(poor)} of {len(cameras)} frames ({poor[0]} to {poor[-1]}) the camera model"
+            " explains little of the rings; view the contact sheet of `check` before you trust it"
         )
     carried = sum(not c.found for c in cameras)
     if carried:
         found.append(
             f"{carried} of {len(cameras)} frames do not show the rings; there the camera is"
-            " carried by what is fixed to the ice"
+            " tracked by other features of the ice"
         )
     if cropped:
         found.append(
-            "the picture seems to be cropped off its middle or stretched (or taken from above"
-            " 20 m, or by hand): places may be centimetres off; give the clip as it was recorded"
+            "the frame seems to be cropped off-centre or stretched (or the camera is over 20 m"
+            " high, or held by hand): places may be centimetres wrong; use the clip as it was"
+            " recorded"
         )
     before, off = float(prior.sd[POSITION][2]), height - float(prior.mean[POSITION][2])
     if prior.height is not None and abs(off) > AT_ODDS * before:
         found.append(
-            f"the camera's height that was given, {prior.height:g} m, does not fit this view, which"
-            f" has it {'higher' if off > 0 else 'lower'}; places may be centimetres off"
+            f"the given camera height, {prior.height:g} m, does not fit this view; the view"
+            f" suggests a {'higher' if off > 0 else 'lower'} camera; places may be centimetres"
+            " wrong"
         )
     if prior.height is None and sd > UNTOLD * before:
         found.append(
-            f"the camera's height cannot be told from this view ({height:.1f} ±"
-            f" {sd:.1f} m assumed); stones far from the picture's middle may be"
-            " centimetres off; give it as `camera_height` if you know it"
+            f"the camera height is not identifiable from this view ({height:.1f} ± {sd:.1f} m"
+            " assumed); stones far from the centre of the frame may be centimetres wrong; give"
+            " `camera_height` if you know it"
         )
     if not lined:
-        found.append("neither centre line nor tee line is seen; y is up in the picture")
+        found.append(
+            "neither centre line nor tee line is visible; y is taken to be up in the frame"
+        )
     return tuple(found)

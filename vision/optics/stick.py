@@ -55,8 +55,8 @@ def stick_cameras(
     width, height = video.size
     if not all(0 <= x <= width and 0 <= y <= height for x, y in (stick[:2], stick[2:4])):
         raise InputError(
-            f"stick {_written(stick)}: not in a picture of {width} × {height} px; read its ends in"
-            " the clip's own pixels"
+            f"stick {_written(stick)}: outside a frame of {width} × {height} px; read its ends in"
+            " the pixels of the clip"
         )
     cameras: list[Camera] = []
     for done, frame in enumerate(video, 1):

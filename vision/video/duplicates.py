@@ -2,7 +2,8 @@
 
 A recording of 25 frames a second that is shown as one of 50 has each twice, one shown as 30 every
 fifth; a stream that halts shows one for a while. A duplicate, coded again, differs from the frame
-before by far less than where something moved just before and just after.
+before by far less than where something moved just before and just after. At the end of the clip
+only what moved just before counts.
 """
 
 from __future__ import annotations
@@ -131,8 +132,14 @@ class DuplicateFilter:
             last, kept = frame.index, seen
             self.shown.append(Shown(frame.index, frame.t, new or None, differs))
             yield frame
+        # Nothing follows to compare with. A scene that comes to rest slows down before.
         self.shown += [Shown(one.index, one.t, None, by.whole) for one, by in held]
-        yield from (one for one, _ in held)
+        moved = [*self._changes][-1:]
+        repeat = bool(moved) and all(one.is_tiny(moved) for _, one in held)
+        if repeat and leaves_out(len(held), so_was_last):
+            self.left_out |= {one.index: Duplicate(one.t, last) for one, _ in held}
+        else:
+            yield from (one for one, _ in held)
 
     def _may_repeat(self, change: Change, held: int) -> bool:
         """Return whether a change is next to nothing compared with those of late.

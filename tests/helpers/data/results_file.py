@@ -5,21 +5,21 @@ from __future__ import annotations
 import json
 
 from curlshot.data.results import (
-    Collision,
     Estimate,
     Friction,
     Glide,
+    Hit,
     Input,
-    Joint,
+    JointEstimate,
     Law,
     MeasuredState,
     Method,
-    Misfit,
+    NotedEstimate,
     Posterior,
     Results,
     SimulationScore,
     StoneResult,
-    Told,
+    TrackResidual,
 )
 
 RESULTS = Results(
@@ -27,7 +27,7 @@ RESULTS = Results(
     restitution=Estimate(0.83, 0.02),
     friction=Friction(0.0109, 3e-4, "constant"),
     collisions=(
-        Collision(
+        Hit(
             t=1.12,
             stderr_t=0.004,
             stones=("A", "B"),
@@ -50,20 +50,25 @@ RESULTS = Results(
         "rigid-body": SimulationScore(None, note="no spins"),
     },
     warnings=("two frames are missing",),
-    laws=Joint(("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))),
+    joint_estimate=JointEstimate(
+        ("restitution", "friction"), (0.83, 0.0109), ((4e-4, 1e-7), (1e-7, 9e-8))
+    ),
     methods={
         "local": Method(Estimate(0.82, 0.03), hits=(Estimate(0.81, 0.03),)),
-        "global": Method(stone_friction=Told(note="nothing slides"), note="not used"),
+        "shot_fit": Method(stone_friction=NotedEstimate(note="nothing slides"), note="not used"),
     },
-    law_choice=(Law("ice constant", 0.0, 0.9, Estimate(0.0109, 3e-4)),),
-    curl=Told(0.008, 0.001),
+    model_selection=(Law("ice constant", 0.0, 0.9, Estimate(0.0109, 3e-4)),),
+    curl=NotedEstimate(0.008, 0.001),
     stones={
         "A": StoneResult(Estimate(0.01, 1e-3), Estimate(0.002, 0.001), 1.2, Estimate(0.6, 0.1))
     },
-    misfits=(Misfit("A", 0.0, 1.2, 0.8, False, False), Misfit("A", 1.2, 5.5, 6.1, True, True)),
+    residuals=(
+        TrackResidual("A", 0.0, 1.2, 0.8, False, False),
+        TrackResidual("A", 1.2, 5.5, 6.1, True, True),
+    ),
     posterior=Posterior(100, {"restitution": {"0.5": 0.83}}, {"restitution": {"restitution": 1.0}}),
     teams={"A": "#d8c020"},
-    sheet=False,
+    origin_at_tee=False,
 )
 
 

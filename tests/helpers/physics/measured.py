@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from curlshot.data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
+from curlshot.data.results import Estimate, Friction, Hit, Input, MeasuredState, Results
 from curlshot.physics.curl import NoCurl
 from curlshot.physics.ice import Constant
 from curlshot.physics.impact import Frictional
@@ -43,7 +43,7 @@ def measured(shot: Shot = HIT) -> tuple[pd.DataFrame, Results, Ensemble]:
         {name: MeasuredState(s.x, s.y, s.vx, s.vy, s.omega) for name, s in side.items()}
         for side in (hit.before, hit.after)
     )
-    collision = Collision(
+    collision = Hit(
         hit.t, 0.001, hit.stones, hit.normal, 0.8, 0.02, before, after,
         stone_friction=0.05, stderr_stone_friction=0.01,
     )  # fmt: skip

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from curlshot.data.tracks import Columns
-from curlshot.physics.local_fit.contacts import Contact
+from curlshot.physics.local_fit.hit_detection import HitCandidate
 
 PUCK = 0.03
-FIRST = Contact(1.0, 0.001, ("A", "B"), (0.0, -1.0))
-SECOND = Contact(1.12, 0.001, ("B", "C"), (0.0, -1.0))
+FIRST = HitCandidate(1.0, 0.001, ("A", "B"), (0.0, -1.0))
+SECOND = HitCandidate(1.12, 0.001, ("B", "C"), (0.0, -1.0))
 
 
 def rows(*pieces: tuple[float, float, float]) -> Columns:

@@ -10,7 +10,7 @@ from curlshot.data.results import StoneState
 from curlshot.physics.curl import FCV1Curl, NoCurl
 from curlshot.physics.ice import FCV1, Constant, IceLaw, Penner
 from curlshot.physics.impact import Frictional, Impact
-from curlshot.physics.simulator.simulation import Hit, Shot, Simulation, StoneStart
+from curlshot.physics.simulator.simulation import HitEvent, Shot, Simulation, StoneStart
 
 R = 0.145
 LAWS: list[IceLaw] = [Constant(), FCV1(), Penner()]
@@ -26,7 +26,7 @@ def shot(
     return Shot(stones, impact or Frictional(0.8, 0.2), ice or FCV1(), curl or FCV1Curl(), radius)
 
 
-def momentum(hit: Hit, states: dict[str, StoneState], masses: dict[str, float]) -> np.ndarray:
+def momentum(hit: HitEvent, states: dict[str, StoneState], masses: dict[str, float]) -> np.ndarray:
     one, two = (masses[n] * np.array([states[n].vx, states[n].vy]) for n in hit.stones)
     return one + two
 

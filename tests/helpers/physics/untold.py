@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 
 R, FPS, BRAKE, E = 0.1455, 30.0, 0.1, 0.8
@@ -59,6 +59,6 @@ def table(
 
 
 def said(detections: pd.DataFrame) -> list[str]:
-    contacts = find_contacts(detections, R)
+    contacts = detect_hits(detections, R)
     warnings = estimate_locally(detections, contacts, radius=R).warnings
     return [text for text in warnings if not text.startswith(("restitution: no hit", "no stone"))]

@@ -9,20 +9,20 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from curlshot.data.results import (
-    Collision,
     Estimate,
     Friction,
     Glide,
+    Hit,
     Input,
-    Joint,
+    JointEstimate,
     Law,
     MeasuredState,
     Method,
+    NotedEstimate,
     Results,
     SimulatedHit,
     SimulationScore,
     StoneResult,
-    Told,
 )
 from curlshot.data.tracks import TRACK_COLUMNS
 from curlshot.physics.curl import FCV1Curl
@@ -137,17 +137,20 @@ def make_shot(frames: int = 170) -> Shot:
         },
         methods={
             "local": Method(
-                Estimate(0.83, 0.02), Estimate(0.0109, 4e-4), Told(), (Estimate(0.83, 0.02),)
+                Estimate(0.83, 0.02),
+                Estimate(0.0109, 4e-4),
+                NotedEstimate(),
+                (Estimate(0.83, 0.02),),
             ),
-            "global": Method(Estimate(0.831, 0.012), note="one fit"),
+            "shot_fit": Method(Estimate(0.831, 0.012), note="one fit"),
         },
-        law_choice=(
+        model_selection=(
             Law("ice fit", 4.7, 0.087, Estimate(0.0111, 6e-4)),
             Law("ice constant", 0.0, 0.913, Estimate(0.0109, 4e-4)),
         ),
-        curl=Told(None, None, "no curl shows"),
+        curl=NotedEstimate(None, None, "no curl shows"),
         stones={"A": StoneResult(Estimate(0.0112, 0.0011), Estimate(), 1.1, Estimate(0.66, 0.01))},
-        laws=Joint(
+        joint_estimate=JointEstimate(
             ("restitution", "friction", "stone_friction"),
             (0.8312345, 0.01093456, 0.05),
             ((1.5e-4, 1e-7, 2e-6), (1e-7, 1.7e-7, 0.0), (2e-6, 0.0, 1e-4)),
@@ -169,7 +172,7 @@ def simulated_hits(e: float) -> tuple[SimulatedHit, ...]:
     return tuple(SimulatedHit(c.t, 0.003, c.stones, c.before, c.after) for c in states)
 
 
-def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]]) -> Collision:
+def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]]) -> Hit:
     t, first, second, n = hit
     before, after = {}, {}
     for name in (first, second):
@@ -179,7 +182,7 @@ def collision(hit: tuple[float, str, str, Vector], pieces: dict[str, list[Piece]
         sd = (0.002, 0.003, 0.012, 0.015, 0.021)
         before[name] = MeasuredState(*map(float, (*place, *velocity)), early.omega, *sd)
         after[name] = MeasuredState(*map(float, (*place, *late.velocity)), late.omega, *sd)
-    return Collision(
+    return Hit(
         t=t, stderr_t=0.0021, stones=(first, second), normal=(float(n[0]), float(n[1])),
         restitution=0.83, stderr=0.02, before=before, after=after, momentum_residual=0.013,
         stderr_momentum=0.006, energy_lost=0.15, stone_friction=None,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from curlshot.data.results import Collision, Estimate, Friction, Input, MeasuredState, Results
+from curlshot.data.results import Estimate, Friction, Hit, Input, MeasuredState, Results
 
-HIT = Collision(
+HIT = Hit(
     1.0, 0.01, ("A", "B"), (0.6, 0.8), 0.82, 0.01,
     {"A": MeasuredState(0, 0, 1.2, 1.6), "B": MeasuredState(0.1, 0.2, 0.3, 0.4)},
     {"A": MeasuredState(0, 0, 0.2, 0.3), "B": MeasuredState(0.1, 0.2, 1.0, 1.1)},

@@ -15,7 +15,7 @@ from curlshot.data.tracks import MEASURED_AS, write_tracks
 from curlshot.data.trk_write import plain_view, project_xml, write_trk
 from curlshot.physics.estimate import estimate
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 RESTITUTION, FRICTION = 0.83, 0.0109
@@ -23,7 +23,7 @@ RESTITUTION, FRICTION = 0.83, 0.0109
 
 def measured(detections: pd.DataFrame) -> np.ndarray:
     """Restitution and friction with their errors, shape (2, 2)."""
-    found = estimate(detections, find_contacts(detections, RADIUS), radius=RADIUS)
+    found = estimate(detections, detect_hits(detections, RADIUS), radius=RADIUS)
     (hit,) = found.collisions
     return np.array(
         [[hit.restitution, hit.stderr], [found.friction.value, found.friction.stderr]], float
@@ -36,7 +36,7 @@ def test_errors_from_earlier_tracks_are_not_falsely_small(tmp_path: Path) -> Non
     for seed in range(4):
         detections = watch(motion, np.random.default_rng(seed), sd=0.003)
         first.append(measured(detections))
-        tracks = smooth(detections, find_contacts(detections, RADIUS), radius=RADIUS)
+        tracks = smooth(detections, detect_hits(detections, RADIUS), radius=RADIUS)
         write_tracks(tracks, tmp_path / "tracks.csv")
         again.append(measured(read_table([tmp_path / "tracks.csv"]).detections))
     truth = np.array([RESTITUTION, FRICTION])
@@ -57,7 +57,7 @@ def with_oddities() -> pd.DataFrame:
 
 def test_what_was_measured_is_read_again(tmp_path: Path) -> None:
     detections = with_oddities()
-    tracks = smooth(detections, find_contacts(detections, RADIUS), radius=RADIUS)
+    tracks = smooth(detections, detect_hits(detections, RADIUS), radius=RADIUS)
     assert (tracks["seen"] == 0).sum() > 2
     write_tracks(tracks, tmp_path / "tracks.csv", detections)
     again = read_table([tmp_path / "tracks.csv"])
@@ -73,7 +73,7 @@ def test_what_was_measured_is_read_again(tmp_path: Path) -> None:
 def written(folder: Path) -> tuple[Path, pd.DataFrame, pd.DataFrame]:
     """Return the file of a run's tracks, its table, and the detections."""
     detections = with_oddities()
-    tracks = smooth(detections, find_contacts(detections, RADIUS), radius=RADIUS)
+    tracks = smooth(detections, detect_hits(detections, RADIUS), radius=RADIUS)
     path = folder / "tracks.csv"
     write_tracks(tracks, path, detections)
     return path, pd.read_csv(path), detections
@@ -145,7 +145,7 @@ def test_rows_that_a_filter_carried_alone_are_refused(tmp_path: Path, measured: 
     if not measured:
         carried = carried.drop(columns=list(MEASURED_AS))
     carried.to_csv(path, index=False)
-    with pytest.raises(InputError, match="no row in which a stone was seen"):
+    with pytest.raises(InputError, match="no row with a place"):
         read_table([path])
     table.drop(columns="seen").to_csv(path, index=False)
     assert len(read_table([path]).detections) == len(table) - len(carried)
@@ -166,7 +166,7 @@ def test_parquet_of_a_run_s_table_is_read_alike(
 def test_places_keep_their_errors_in_every_form(tmp_path: Path, ending: str, rows: str) -> None:
     """Alone smoothed ones would pass for detections without noise, and e for exact."""
     detections = with_oddities()
-    tracks = smooth(detections, find_contacts(detections, RADIUS), radius=RADIUS)
+    tracks = smooth(detections, detect_hits(detections, RADIUS), radius=RADIUS)
     write_tracks(tracks, tmp_path / "tracks.csv", detections if rows == "measured" else None)
     table = read_table([tmp_path / "tracks.csv"]).detections
     path = tmp_path / f"a{ending}"

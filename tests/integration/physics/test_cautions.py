@@ -54,7 +54,7 @@ def test_too_few_frames_to_tell_motion_are_said(frames: int, warned: bool) -> No
     seen = seen.assign(x=0.1, y=2.0 - 0.04 * seen["frame"], team="", sd_x=0.002, sd_y=0.002)
     seen = seen.reindex(columns=list(DETECTION_COLUMNS))
     said = analyse(Measurement((Path("few.csv"),), seen, 25.0, frames, ())).results.warnings
-    assert any("too few to tell which of them move" in text for text in said) == warned
+    assert any("too few to identify which ones move" in text for text in said) == warned
 
 
 def test_marks_that_no_track_heeds_are_named() -> None:

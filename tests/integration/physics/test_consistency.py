@@ -23,7 +23,7 @@ from curlshot.physics.filter.stretch import (
     steps,
 )  # fmt: skip
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.tests.helpers.physics.watch import (
     RADIUS,
     airtable,
@@ -111,7 +111,7 @@ def stretches_of(seen: pd.DataFrame, radius: float = RADIUS) -> list[Stretch]:
         kept.append(stretch)
         return filtered(stretch)
 
-    smooth(seen, find_contacts(seen, radius), radius=radius, run=spy)
+    smooth(seen, detect_hits(seen, radius), radius=radius, run=spy)
     return [stretch for stretch in kept if not stretch.rest.any()]
 
 

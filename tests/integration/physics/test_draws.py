@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from curlshot.physics.estimate import Estimates, estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
 from curlshot.tests.helpers.physics.watch import RADIUS, watch
 
@@ -23,7 +23,7 @@ def seen_draw(ice: Ice, speed: float, rng: np.random.Generator, sd: float) -> pd
 
 
 def measure(seen: pd.DataFrame) -> Estimates:
-    return estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    return estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
 
 
 @pytest.mark.parametrize(("ice", "speed"), [(EVEN, 0.78), (FALLING, 0.92), (FALLING, 0.6)])
@@ -31,8 +31,8 @@ def test_friction_of_one_draw(ice: Ice, speed: float) -> None:
     pulls = []
     for seed in range(4):
         found = measure(seen_draw(ice, speed, np.random.default_rng(seed), 0.0005))
-        assert found.whole is not None
-        assert found.whole.settled
+        assert found.shot_fit is not None
+        assert found.shot_fit.settled
         assert found.friction.law == ("constant" if ice is EVEN else "fit")
         assert found.friction.value is not None
         assert found.friction.stderr is not None

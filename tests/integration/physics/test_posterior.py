@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from curlshot.physics.estimate import estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.posterior import sample_posterior, summarise
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_draws_have_the_errors_of_the_estimates_and_their_correlation() -> None:
     seen = watch(hit_motion(1.5, 0.15), np.random.default_rng(1), sd=0.003)
-    found = estimate(seen, find_contacts(seen, RADIUS), radius=RADIUS)
-    assert found.whole is not None
+    found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
+    assert found.shot_fit is not None
     drawn = sample_posterior(found, 4000, np.random.default_rng(2))
     assert drawn is not None
     assert list(drawn.columns) == ["sample", "restitution", "friction", "stone_friction"]
@@ -25,8 +25,8 @@ def test_draws_have_the_errors_of_the_estimates_and_their_correlation() -> None:
         found.restitution.value, abs=1e-3
     )
     names = ["restitution", "friction"]
-    a, b = (found.whole.names.index(name) for name in names)
-    cov = found.whole.cov
+    a, b = (found.shot_fit.names.index(name) for name in names)
+    cov = found.shot_fit.cov
     expected = cov[a, b] / np.sqrt(cov[a, a] * cov[b, b])
     assert summary.correlation["restitution"]["friction"] == pytest.approx(expected, abs=0.06)
     assert summary.correlation["friction"]["friction"] == pytest.approx(1.0)

@@ -118,7 +118,7 @@ def test_the_command_writes_the_sheet_whole(tmp_path, capsys) -> None:
     out = tmp_path / "out"
     assert main(["check", str(sample_clip()), "--frames", "0:30", "-o", str(out), "-q"]) == 0
     said = capsys.readouterr().out
-    assert "carried in 0" in said
+    assert "carried over in 0" in said
     assert [item.name for item in out.iterdir()] == ["check.png"]
     assert cv2.imread(str(out / "check.png")).shape[1] > 1500
 

@@ -71,7 +71,7 @@ def test_numbers_are_those_of_the_results(written, shot):
     page = Page(written)
     values = {value for value, _ in page.numbers}
     raw = json.loads(results_json(shot.results))
-    for key in ("schema", "laws", "law_choice", "methods", "stones", "posterior"):
+    for key in ("schema", "joint_estimate", "model_selection", "methods", "stones", "posterior"):
         raw.pop(key)  # the page draws them, or gives what follows from them
     missing = [number for number in numbers_in(raw) if number not in values]
     assert missing == []
@@ -95,7 +95,7 @@ def test_the_answer_comes_first(written, tmp_path, shot):
         assert said.index(words) < first
     assert "1.2.3" in said
     said = " ".join(said.split())
-    assert "frictional, the shot again as fitted to the whole of it" in said
+    assert "frictional, simulated with the laws and the start of the shot fit" in said
     results = dataclasses.replace(
         shot.results, collisions=shot.results.collisions[:1], glides=shot.results.glides[:1]
     )
@@ -148,7 +148,7 @@ def test_what_is_not_known_is_said_with_its_reason(tmp_path, shot):
         collisions=(),
         glides=(),
         simulations={},
-        laws=None,
+        joint_estimate=None,
         warnings=("no hit was seen: no restitution", "no glide is long enough: no friction"),
     )
     (tmp_path / "figures").mkdir()

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from curlshot.config import VideoConfig
-from curlshot.data.results import Results, Told
+from curlshot.data.results import NotedEstimate, Results
 from curlshot.data.sheet import HOUSE
 from curlshot.physics.curl import FCV1Curl
 from curlshot.physics.ice import FCV1
@@ -72,7 +72,7 @@ CONTRASTS = """(() => {
 @pytest.fixture(scope="module")
 def results(shot) -> Results:
     """What was found, with a curl that no law has by itself."""
-    return dataclasses.replace(shot.results, curl=Told(0.006, 0.001))
+    return dataclasses.replace(shot.results, curl=NotedEstimate(0.006, 0.001))
 
 
 @pytest.fixture(scope="module")
@@ -374,7 +374,12 @@ def test_a_simulation_gone_astray_leaves_the_measured_shot_in_sight(browser, tmp
 def test_a_still_picture_has_a_page_too(browser, tmp_path, shot):
     still = shot.tracks[shot.tracks["frame"] == 0].assign(vx=np.nan, vy=np.nan, omega=np.nan)
     results = dataclasses.replace(
-        shot.results, collisions=(), glides=(), simulations={}, laws=None, warnings=("one picture",)
+        shot.results,
+        collisions=(),
+        glides=(),
+        simulations={},
+        joint_estimate=None,
+        warnings=("one picture",),
     )
     page = write_report(tmp_path, results=results, tracks=still, simulations={}, house=HOUSE)
     with browser.tab() as tab:

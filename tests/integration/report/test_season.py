@@ -18,7 +18,7 @@ from curlshot.outcome import Run
 from curlshot.physics.statistics.season import hits_table, pooled, shots_table
 from curlshot.report.season import season_figure
 from curlshot.season.batch import run_each
-from curlshot.season.together import season
+from curlshot.season.together import combine
 from curlshot.tests.helpers.report.shots import BARE, SHOT
 
 
@@ -106,7 +106,7 @@ def test_a_shot_that_is_there_twice_counts_once(
     said = capsys.readouterr().out
     assert "two   the same shot as one: counted once" in said and "of 2 shots" in said
     assert pd.read_csv(tmp_path / "out" / "shots.csv")["shot"].tolist() == ["one", "three"]
-    both = season({"a": BARE, "b": BARE})  # of which nothing is known that could be alike
+    both = combine({"a": BARE, "b": BARE})  # of which nothing is known that could be alike
     assert len(both.shots) == 2 and both.means["restitution"].value is None
 
 
@@ -132,6 +132,7 @@ def test_one_bad_clip_does_not_stop_the_others(
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.slow
 def test_two_clips_at_once_come_to_what_one_after_the_other_does(tmp_path: Path) -> None:
     for name in ("one.mp4", "two.mp4"):
         shutil.copy(pipeline.sample_clip(), tmp_path / name)

@@ -21,7 +21,7 @@ NAMES = {"a < b": 0.82, "shot 2": 0.79, "shot 10": 0.91, "early": None}
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("season")
-    bare = replace(BARE, warnings=("restitution: no hit seen",))
+    bare = replace(BARE, warnings=("restitution: no hit detected",))
     for name, value in NAMES.items():
         shot: Results = bare if value is None else replace(SHOT, restitution=Estimate(value, 0.01))
         write_results(shot, folder / "runs" / name / "results.json")
@@ -37,7 +37,7 @@ def test_it_says_what_all_shots_say_and_leads_to_each(written: Path) -> None:
     assert page.tags[0] == ("html", {"lang": "en-GB"})
     assert "mean of 3 shots; from shot to shot it scatters by" in page.said
     assert "zz: the same shot as shot 2: counted once" in page.said
-    assert "restitution: no hit seen" in page.said
+    assert "restitution: no hit detected" in page.said
     addresses = [address["href"] or "" for address in page.all("a")]
     reports = {written.parent / address.replace("%20", " ") for address in addresses}
     assert all(path.exists() or "%3C" in str(path) for path in reports)

@@ -15,7 +15,7 @@ from curlshot.data.tracks import DETECTION_COLUMNS, teams
 from curlshot.physics.filter.rate_filter import filtered, forward
 from curlshot.physics.filter.stretch import Smoothed, Stretch
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.synthetic.clip import render_still
 from curlshot.synthetic.scoring import score_tracks
 from curlshot.tests.helpers.vision.stones import (
@@ -105,7 +105,7 @@ def test_balls_among_projected_rings_hit_each_other(
     clip = open_video([shared / "clips" / f"{name}.mp4"], VideoConfig(frames=(0, last)))
     cameras = stick_cameras(clip, (70.0, 360.0, 1173.0, 360.0, 1.9))
     seen = track_stones(clip, cameras, disc=plain_disc(0.0286)).detections
-    (contact,) = find_contacts(seen, 0.0286)
+    (contact,) = detect_hits(seen, 0.0286)
     assert contact.t == pytest.approx(hit, abs=0.05)
     assert {*seen.loc[seen["t"] > hit, "stone"]} == {*contact.stones}
 
@@ -209,7 +209,7 @@ def test_the_filter_is_no_surer_of_a_clip_than_it_may_be() -> None:
         stretches.append(stretch)
         return filtered(stretch)
 
-    tracks = smooth(seen, find_contacts(seen, STONE.radius), radius=STONE.radius, run=spy)
+    tracks = smooth(seen, detect_hits(seen, STONE.radius), radius=STONE.radius, run=spy)
     moving = [forward(s) for s in stretches if not s.rest.any()]
     square = np.concatenate([each.normalised_innovations[6:] for each in moving]) ** 2
     for axis in range(3):

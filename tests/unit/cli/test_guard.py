@@ -37,7 +37,7 @@ class Watched(Bars):
         (SceneError("no house"), 2, "curlshot: no house\n"),
         (OSError(errno.ENOSPC, "No space left", "out"), 2, "curlshot: out: No space left\n"),
         (MemoryError(), 2, f"curlshot: {NO_MEMORY}\n"),
-        (KeyboardInterrupt(), 130, "curlshot: stopped; what was under way is not written\n"),
+        (KeyboardInterrupt(), 130, "curlshot: stopped; unfinished output is not written\n"),
     ],
 )
 def test_a_failure_is_one_line(error, code: int, said: str, capsys) -> None:
@@ -89,7 +89,7 @@ def test_a_signal_to_end_leaves_nothing_behind(name: str, tmp_path: Path, capsys
         assert guarded(work, bars) == 128 + number
         assert signal.getsignal(number) is signal.SIG_DFL
     assert list(tmp_path.iterdir()) == []
-    said = "curlshot: stopped; what was under way is not written\n"
+    said = "curlshot: stopped; unfinished output is not written\n"
     assert (capsys.readouterr().err, bars.closed) == (said, 1)
 
 

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from curlshot.cli import values
-from curlshot.cli.options import OFFSETS
-from curlshot.data.limits import FRACTION, FRICTION, POSITIVE, RADIUS, SAMPLES
+from curlshot.data.limits import FRACTION, FRICTION, OFFSET, POSITIVE, RADIUS, SAMPLES
 from curlshot.physics.prediction.what_if import Amount
 
 
@@ -18,7 +17,7 @@ from curlshot.physics.prediction.what_if import Amount
         (values.folder, "shot", Path("shot")),
         (values.within(FRACTION), "1", 1.0),
         (values.within(FRICTION), "0.0109", 0.0109),
-        (values.within(OFFSETS), "-0.05", -0.05),
+        (values.within(OFFSET), "-0.05", -0.05),
         (values.amount, "1.5", Amount(1.5, False)),
         (values.amount, "-0.5x", Amount(-0.5, True)),
         (values.speed, "1.1x", Amount(1.1, True)),
@@ -48,8 +47,8 @@ def test_what_is_meant_is_read(read, text: str, value) -> None:
         (values.within(FRICTION), "0.5", "a friction of ice"),
         (values.within(RADIUS), "14.55", "a radius in metres"),
         (values.within(RADIUS), "-1", "a radius in metres"),
-        (values.within(OFFSETS), "far", "a distance in metres"),
-        (values.within(OFFSETS), "-0,05", r"-5 to 5; write -0\.05, with a point"),
+        (values.within(OFFSET), "far", "a distance in metres"),
+        (values.within(OFFSET), "-0,05", r"-5 to 5; write -0\.05, with a point"),
         (values.speed, "1,1x", r"at most 10x; write 1\.1x, with a point"),
         (values.mass, "A=19,1", r"a positive number; write 19\.1, with a point"),
         (values.speed, "0", "nor a factor such as 1.1x"),

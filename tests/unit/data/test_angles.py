@@ -37,7 +37,7 @@ def test_the_point_tells_the_unit_of_its_angle(tmp_path: Path, start: float, uni
     np.testing.assert_allclose(found.theta, theta, atol=1e-8)
     assert found.warnings == ()
     other = "rad" if unit == "deg" else "deg"
-    assert f"in {unit}, as the file shows" in read_angles(path, other).warnings[0]
+    assert f"the file gives angles in {unit}" in read_angles(path, other).warnings[0]
 
 
 def test_a_start_beyond_half_a_turn_means_degrees(tmp_path: Path) -> None:
@@ -49,7 +49,7 @@ def test_a_start_beyond_half_a_turn_means_degrees(tmp_path: Path) -> None:
 def test_without_evidence_the_unit_is_what_the_user_says(tmp_path: Path) -> None:
     path = put(tmp_path, "edge\nt\tθ\n" + table(T, THETA))
     np.testing.assert_allclose(read_angles(path, "deg").theta, np.radians(THETA), atol=1e-8)
-    assert "taken in radians" in read_angles(path).warnings[0]
+    assert "read in radians" in read_angles(path).warnings[0]
     slow = put(tmp_path, "edge\nt\tθ\n" + table(T, 1.0 + 8 * T))
     with pytest.raises(InputError, match="degrees or in radians"):
         read_angles(slow)

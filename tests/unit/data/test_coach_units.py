@@ -30,6 +30,7 @@ def test_units_are_found_by_their_symbols():
 def test_a_text_is_told_in_feet() -> None:
     text = "first seen 3.9 m past it at 0.48 m/s, 3 mm off after 2.0 s, 10 more"
     assert (
-        FEET.told(text) == "first seen 12.8 ft past it at 1.57 ft/s, 3 mm off after 2.0 s, 10 more"
+        FEET.converted(text)
+        == "first seen 12.8 ft past it at 1.57 ft/s, 3 mm off after 2.0 s, 10 more"
     )
-    assert METRES.told(text) == text
+    assert METRES.converted(text) == text

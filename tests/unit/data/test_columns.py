@@ -150,7 +150,7 @@ def test_whole_numbers_are_frames_if_their_rate_is_given(tmp_path: Path) -> None
         times(tmp_path, "t", ["0", "1", "2"])
     found, _, (warning,) = times(tmp_path, "t", ["0", "1", "2"], fps=50)
     np.testing.assert_allclose(found, [0, 0.02, 0.04])
-    assert "taken as frames" in warning
+    assert "read as frames" in warning
     _, _, (warning,) = times(tmp_path, "t", ["0.0", "0.5", "1.2"], fps=50)
     assert "not used" in warning
 

@@ -107,7 +107,9 @@ def test_a_file_that_cannot_be_written_is_named_itself(tmp_path: Path) -> None:
 
 
 def test_results_do_not_go_into_a_new_folder_named_like_a_file(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"tracks\.csv: would be a folder of results; name"):
+    with pytest.raises(
+        InputError, match=r"tracks\.csv: would be a folder of results; choose a name"
+    ):
         check_folder(tmp_path / "tracks.csv")
     for name in ("season.2026", "old.csv"):
         (tmp_path / "old.csv").mkdir(exist_ok=True)

@@ -27,7 +27,7 @@ def test_the_form_of_the_file() -> None:
     assert raw["schema"] == SCHEMA == 1
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
-        *("simulations", "warnings", "radius", "predictions", "laws", "methods", "law_choice"),
+        *("simulations", "warnings", "radius", "predictions", "laws", "methods", "model_selection"),
         *("curl", "stones", "misfits", "posterior", "masses", "teams"),
         "sheet",
     }

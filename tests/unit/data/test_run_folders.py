@@ -48,5 +48,7 @@ def test_a_run_without_results_is_named(tmp_path: Path) -> None:
 
 def test_runs_of_stones_and_of_pucks_are_no_season(tmp_path: Path) -> None:
     runs = [written(tmp_path / "stones"), written(tmp_path / "pucks", 0.0465)]
-    with pytest.raises(InputError, match=r"^pucks: of discs of radius 0.0465 m, but .*0.1455 m"):
+    with pytest.raises(
+        InputError, match=r"^pucks: its discs have a radius of 0.0465 m, .*0.1455 m"
+    ):
         find_runs(runs)

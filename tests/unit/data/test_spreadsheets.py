@@ -83,7 +83,7 @@ def test_nor_may_one_file_leave_to_others_what_its_unit_is(tmp_path: Path) -> No
     one, two = tmp_path / "A.csv", tmp_path / "B.csv"
     one.write_text(f"t,x (cm),y (cm)\n{rows(T, 100 * A)}")
     two.write_text(f"t,x,y\n{rows(T, B)}")
-    with pytest.raises(InputError, match=r"B.csv: tells no length unit, but .*A.csv is in cm"):
+    with pytest.raises(InputError, match=r"B.csv: has no length unit, but .*A.csv is in cm"):
         read_table([one, two])
     two.write_text(f"t,x (m),y (m)\n{rows(T, B)}")
     assert is_true(read_table([one, two]), A=A, B=B)

@@ -143,7 +143,7 @@ def test_whole_numbers_as_time_are_frames_or_refused(tmp_path: Path) -> None:
     text = "t,x,y\n1,0,0\n2,0.1,0\n4,0.3,0\n"
     frames = read(tmp_path, text, fps=25)
     assert list(frames.detections["t"]) == [0.04, 0.08, 0.16]
-    assert "taken as frames" in frames.warnings[0]
+    assert "read as frames" in frames.warnings[0]
     with pytest.raises(InputError, match=r"whole numbers: frames\? give their rate"):
         read(tmp_path, text)
     seconds = "t,x,y\n1.000,0,0\n2.000,0.1,0\n4.000,0.3,0\n"

@@ -52,7 +52,7 @@ def test_what_was_done_to_the_picture_and_between_marks_is_told() -> None:
     ).file()
     assert found.tracks["stone"].tolist() == ["red"] * 4
     assert found.masses["red"] == 19.0
-    for words in ("(rotate)", "2 places of red were filled in", "late has no mark in the clip"):
+    for words in ("(rotate)", "filled in 2 places of red", "late has no mark in the clip"):
         assert any(words in text for text in found.warnings), words
 
 

@@ -10,7 +10,7 @@ from curlshot.physics.filter import reference_filter as reference
 from curlshot.physics.filter.rate_filter import filtered
 from curlshot.physics.filter.stretch import Filter
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import Contact, find_contacts
+from curlshot.physics.local_fit.hit_detection import HitCandidate, detect_hits
 from curlshot.tests.helpers.physics.kalman import errors
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
@@ -18,7 +18,7 @@ from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 def test_smoothing_is_better_than_looking() -> None:
     motion = hit_motion(1.2, 0.08, after=1.5)
     seen = watch(motion, np.random.default_rng(32), sd=0.006)
-    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     off, _ = errors(tracks, motion)
     far = np.abs(tracks["t"] - motion.hits[0].t) > 0.05
     assert np.sqrt(np.mean(off[far, :2] ** 2)) < 0.003
@@ -29,7 +29,7 @@ def test_smoothing_is_better_than_looking() -> None:
 def test_nothing_leaks_across_a_hit() -> None:
     motion = hit_motion()
     seen = watch(motion, np.random.default_rng(33))
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     whole = smooth(seen, hits, radius=RADIUS)
     late = seen["t"] > hits[0].t
     other = seen.copy()
@@ -52,7 +52,9 @@ def test_a_row_that_may_lie_on_the_other_side_of_a_hit_says_so() -> None:
     frame = seen["t"].unique()[np.searchsorted(seen["t"].unique(), motion.hits[0].t)]
     sure, unsure = (
         smooth(
-            seen, [Contact(frame - 0.001, error, ("A", "B"), motion.hits[0].normal)], radius=RADIUS
+            seen,
+            [HitCandidate(frame - 0.001, error, ("A", "B"), motion.hits[0].normal)],
+            radius=RADIUS,
         )
         for error in (1e-5, 1e-3)
     )
@@ -71,7 +73,7 @@ def test_an_angle_seen_beside_a_hit_is_kept_whatever_becomes_of_the_spin() -> No
     turned = 9.0 * np.minimum(t - 1.0, 0.0) - 9.0 * np.maximum(t - 1.0, 0.0)
     seen = pd.DataFrame({"stone": "A", "t": t, "x": 0.0, "y": np.minimum(t - 1.0, 0.0)})
     seen = check_detections(seen.assign(theta=turned, sd_x=0.002, sd_y=0.002, sd_theta=0.01))
-    tracks = smooth(seen, [Contact(1.0, 0.005, ("A", "B"), (0.0, 1.0))], radius=RADIUS)
+    tracks = smooth(seen, [HitCandidate(1.0, 0.005, ("A", "B"), (0.0, 1.0))], radius=RADIUS)
     assert np.abs(tracks["theta"] - turned).max() < 0.05
     beside = tracks["omega"][t == 1.0].item(), tracks["sd_omega"][t == 1.0].item()
     assert beside[0] == pytest.approx(-9.0, abs=0.5)
@@ -81,7 +83,7 @@ def test_an_angle_seen_beside_a_hit_is_kept_whatever_becomes_of_the_spin() -> No
 def test_a_stone_at_rest_stays_at_rest() -> None:
     motion = hit_motion()
     seen = watch(motion, np.random.default_rng(34))
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     tracks = smooth(seen, hits, radius=RADIUS)
     resting = tracks[(tracks["stone"] == "B") & (tracks["t"] < hits[0].t)]
     assert (resting[["vx", "vy", "omega"]] == 0).all().all()
@@ -122,7 +124,7 @@ def test_gaps_are_bridged_and_marked() -> None:
     dropped = seen["frame"].isin(rng.choice(150, 40, replace=False))
     hidden = (seen["stone"] == "A") & seen["t"].between(0.4, 0.7)
     left = seen[~dropped & ~hidden].reset_index(drop=True)
-    tracks = smooth(left, find_contacts(left, RADIUS), radius=RADIUS)
+    tracks = smooth(left, detect_hits(left, RADIUS), radius=RADIUS)
     assert tuple(tracks.columns) == TRACK_COLUMNS
     carried = tracks[tracks["seen"] == 0]
     assert set(carried["stone"]) == {"A"}
@@ -137,7 +139,7 @@ def test_gaps_are_bridged_and_marked() -> None:
 def test_frames_in_which_nothing_was_measured_have_states_where_they_are_wanted() -> None:
     motion = hit_motion(1.0, 0.05)
     seen = watch(motion, np.random.default_rng(8), sd=0.002)
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     without = smooth(seen, hits, radius=RADIUS)
     t = float(seen["t"].iloc[10]) + 0.005
     tracks = smooth(seen, hits, radius=RADIUS, duplicates={9999: Duplicate(t, 10)})
@@ -156,7 +158,7 @@ def test_outliers_are_refused() -> None:
     wild = rng.choice(np.flatnonzero(seen["t"] > 0.3), 5, replace=False)
     bad = seen.copy()
     bad.loc[wild, "x"] += 0.3
-    tracks = smooth(bad, find_contacts(bad, RADIUS), radius=RADIUS)
+    tracks = smooth(bad, detect_hits(bad, RADIUS), radius=RADIUS)
     keys = pd.MultiIndex.from_frame(bad.loc[wild, ["stone", "frame"]])
     refused = tracks.set_index(["stone", "frame"]).loc[keys, "seen"]
     assert (refused == 0).all()
@@ -168,7 +170,7 @@ def test_a_spin_is_seen_through_missing_angles() -> None:
     motion = hit_motion(stone_friction=0.2)
     seen = watch(motion, np.random.default_rng(37))
     seen.loc[seen["frame"] % 3 == 0, ["theta", "sd_theta"]] = np.nan
-    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     off, _ = errors(tracks, motion)
     assert np.abs(off[:, 5]).max() < 0.3
     late = tracks[(tracks["stone"] == "B") & tracks["t"].between(1.3, 2.0)]["omega"]
@@ -202,7 +204,7 @@ def test_what_detections_share_is_not_averaged_out() -> None:
 def test_what_places_share_does_not_turn_the_line_on_which_stones_hit() -> None:
     """Velocities tell spins of poorly seen handles as well wherever all of it happens."""
     seen = watch(hit_motion(), np.random.default_rng(5), sd=0.001, sd_theta=0.3)
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     alike = seen.assign(sd_place_x=0.006, sd_place_y=0.006)
     sure, shared = (smooth(table, hits, radius=RADIUS) for table in (seen, alike))
     turning = sure["sd_omega"] > 0.05
@@ -251,7 +253,7 @@ def test_a_stone_that_stops_unseen_and_is_hit_later_was_not_moved(run: Filter) -
     hitting = pd.DataFrame({"stone": "A", "frame": np.arange(len(t)), "t": t, "y": 0.8})
     hitting["x"] = np.where(t < 7, 1.5, 0.1) * (t - 7) - 2 * RADIUS
     detections = check_detections(pd.concat([hitting, table]))
-    contacts = [Contact(7.0, 0.001, ("A", "B"), (1.0, 0.0))]
+    contacts = [HitCandidate(7.0, 0.001, ("A", "B"), (1.0, 0.0))]
     unseen = {round(25 * at): Duplicate(float(at), -1) for at in when}
     tracks = smooth(detections, contacts, radius=RADIUS, run=run, duplicates=unseen)
     b = tracks[(tracks["stone"] == "B") & tracks["t"].between(3.6, 4.6)]

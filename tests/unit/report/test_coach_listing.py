@@ -32,7 +32,7 @@ def test_notes_name_lengths_in_the_unit_of_the_table(shot):
 
     for name in ("coach_stones", "coach_speeds"):
         said = notes(metres[name])
-        assert notes(feet[name]) == FEET.told(said) != said
+        assert notes(feet[name]) == FEET.converted(said) != said
 
 
 def test_every_stone_that_stopped_has_a_distance_to_every_other(shot):

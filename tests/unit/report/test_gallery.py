@@ -26,21 +26,21 @@ def test_there_is_no_figure_of_what_is_not_known(shot):
         shot,
         tracks=blind,
         simulations={},
-        results=dataclasses.replace(shot.results, collisions=(), glides=(), laws=None),
+        results=dataclasses.replace(shot.results, collisions=(), glides=(), joint_estimate=None),
     )
     assert said == ["plan", "speed", "motion_A", "motion_B", "motion_C"]
 
 
 def test_of_stones_that_all_lie_still_there_is_the_plan(shot):
     still = shot.tracks[shot.tracks["stone"] == "D"]
-    results = dataclasses.replace(shot.results, collisions=(), glides=(), laws=None)
+    results = dataclasses.replace(shot.results, collisions=(), glides=(), joint_estimate=None)
     assert names(shot, tracks=still, simulations={}, results=results) == ["plan"]
 
 
 def test_names_of_files_differ_on_every_disk(shot):
     new = {"A": "a/b", "B": "A_B", "C": "a\\b"}
     tracks = shot.tracks.replace({"stone": new})
-    results = dataclasses.replace(shot.results, collisions=(), glides=(), laws=None)
+    results = dataclasses.replace(shot.results, collisions=(), glides=(), joint_estimate=None)
     found = [n for n in names(shot, tracks=tracks, results=results) if n.startswith("motion")]
     assert sorted(name.lower() for name in found) == ["motion_a_b", "motion_a_b-2", "motion_a_b-3"]
 

@@ -33,9 +33,9 @@ def test_predictions_stand_beside_what_was_fitted(shot):
     (row,) = made["predictions"].frame.to_dict("records")
     assert made["predictions"].columns[2].parts(row) == ("31", "50")
     assert "is known of μ beforehand, with e assumed." in made["predictions"].note
-    assert "as fitted" in made["models"].note
-    assert "fits the shot" in made["table_4_point-mass"].note
-    other = page_tables(replace(results, laws=None, predictions={}), shot.tracks)
+    assert "shot fit" in made["models"].note
+    assert "start of the shot fit" in made["table_4_point-mass"].note
+    other = page_tables(replace(results, joint_estimate=None, predictions={}), shot.tracks)
     alone = {table.name: table for table in other}
     assert "predictions" not in alone
     assert "from before" in alone["models"].note
@@ -60,4 +60,4 @@ def test_why_a_hit_tells_no_friction_between_stones(shot):
 
 
 def test_which_glides_are_left_out_is_said(made):
-    assert "to 0.02 or better. Shorter ones are left out" in made["glides"].note
+    assert "with an error of 0.02 or less. Shorter glides are left out" in made["glides"].note

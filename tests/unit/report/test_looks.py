@@ -72,8 +72,8 @@ def test_the_lines_say_what_is_known_and_what_is_not() -> None:
     lines = check_lines("a.mp4", 70, table(60, 17), looks, ["the picture shakes"])
     said = "\n".join(lines)
     assert "a.mp4: 70 frames" in said
-    assert "edges 0.20 px off, worst frame 0.90 px" in said
-    assert "carried in 9 of them" in said
+    assert "edge residual 0.20 px, worst frame 0.90 px" in said
+    assert "carried over in 9 of them" in said
     assert "2.0 mm at the 12-ft ring" in said
     assert "2 at most in one of 3 frames" in said
     assert lines[-1] == "warning     the picture shakes"

@@ -12,7 +12,7 @@ from curlshot.data.results_file import write_results
 from curlshot.data.run_folders import find_runs
 from curlshot.physics.statistics.season import hits_table, pooled, shots_table
 from curlshot.report.season import season_figure
-from curlshot.season.together import season
+from curlshot.season.together import combine
 from curlshot.tests.helpers.report.shots import BARE, SHOT
 
 
@@ -52,7 +52,7 @@ def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
         write_results(shot, tmp_path / parent / "shot" / "results.json")
     found = find_runs([tmp_path / "p" / "shot", tmp_path / "q" / "shot", tmp_path / "p" / "shot"])
     assert list(found) == ["p-shot", "q-shot"]
-    assert season(found).shots["shot"].tolist() == ["p-shot", "q-shot"]
+    assert combine(found).shots["shot"].tolist() == ["p-shot", "q-shot"]
 
 
 def test_folder_without_runs_is_refused(tmp_path: Path) -> None:

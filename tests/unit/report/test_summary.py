@@ -25,12 +25,12 @@ def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
         rest_sd={"A": 0.05, "B": 0.002, "C": None, "D": 0.1},
     )
     text = summary(replace(shot.results, simulations={"frictional": score}), shot.tracks)
-    how = "frictional, as fitted" if shot.results.laws is not None else "frictional"
+    how = "frictional, as fitted" if shot.results.joint_estimate is not None else "frictional"
     lines = text.splitlines()
     said = lines.index(f"simulated   {how}: 2.0 cm RMS off")
     off = "at the end      A 3.1 cm (± 5.0 cm), B 1.2 mm (± 2.0 mm), D 20.0 cm (± 10.0 cm)"
     assert lines[said + 1] == f"            {off}"
-    apart = summary(replace(shot.results, laws=None), shot.tracks)
+    apart = summary(replace(shot.results, joint_estimate=None), shot.tracks)
     assert "simulated   frictional: " in apart and "as fitted" not in apart
     unknown = replace(shot.results, simulations={"frictional": replace(score, rest_sd={})})
     assert "at the end" not in summary(unknown, shot.tracks)
@@ -47,7 +47,7 @@ def test_models_that_come_to_the_same_are_said_together(shot):
 
 def test_the_summary_of_many_stones_keeps_to_the_width_of_a_terminal(shot):
     off = dict.fromkeys("ABCDEFG", 0.1234)
-    guess = Prediction(0.1, off, off, error_after=off, sd_after=off)
+    guess = Prediction(0.1, off, off, error_at_comparison=off, sd_at_comparison=off)
     text = summary(replace(shot.results, predictions={"frictional": guess}), shot.tracks)
     lines = [line for line in text.splitlines() if "(±" in line or "RMS" in line]
     assert sum(line.count("(±") for line in lines) == 14

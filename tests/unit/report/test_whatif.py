@@ -9,7 +9,7 @@ from matplotlib.patches import Circle
 
 from curlshot.data.sheet import SHEET, STONE
 from curlshot.physics.prediction.what_if import Amount, Changes
-from curlshot.report.whatif import spread_figure, told
+from curlshot.report.whatif import described, spread_figure
 from curlshot.tests.helpers.report.drawn import check_layout
 from curlshot.tests.helpers.report.whatif import outcomes
 
@@ -27,7 +27,7 @@ def test_a_stone_that_hits_nothing_and_one_that_always_leaves_are_told_of() -> N
 def test_what_was_changed_is_said_in_words() -> None:
     changes = Changes(0.9, None, Amount(1.1, True), Amount(-1.5, False), -0.05)
     as_written = {name: value for name, value in asdict(changes).items() if value is not None}
-    assert told(as_written) == [
+    assert described(as_written) == [
         "e = 0.9", "speed × 1.1", "spin = −1.5 rad/s", "aimed 0.05 m to its right",
     ]  # fmt: skip
 

@@ -9,7 +9,7 @@ import pytest
 from curlshot.data.tracks import check_detections
 from curlshot.physics.local_fit.candidate_pruning import MANY, prune_candidates
 from curlshot.physics.local_fit.candidates import candidates
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.traces import traces
 from curlshot.tests.helpers.physics.watch import NAMES, RADIUS
 
@@ -41,12 +41,12 @@ def test_stones_that_go_together_hit_none() -> None:
     every = candidates(known, RADIUS)
     assert len(every) > MANY
     assert len(prune_candidates(every, known)) < len(every) / 4
-    assert find_contacts(row(hit=False), RADIUS) == ()
+    assert detect_hits(row(hit=False), RADIUS) == ()
 
 
 def test_a_hit_among_stones_that_go_together_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("curlshot.physics.local_fit.candidate_pruning.MANY", 0)
-    (hit,) = find_contacts(row(hit=True), RADIUS)
+    (hit,) = detect_hits(row(hit=True), RADIUS)
     assert {*hit.stones} == {"A", "B"}
     assert abs(hit.t - 1.5) < 4 * hit.stderr_t
 

@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from curlshot.physics.local_fit.contacts import cut_all
 from curlshot.physics.local_fit.fit import fit_shot
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.hit_detection import cut_all
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import traces
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 

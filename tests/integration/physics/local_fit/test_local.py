@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.synthetic.physics import Ice, Impact, Start, simulate
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
@@ -18,7 +18,7 @@ def test_long_glides_on_ice_that_slows_slow_stones_more() -> None:
         starts = [Start(rng.uniform(0.0, 0.15), -2.9, 0, rng.uniform(0.9, 1.1), 0, 1), Start(0, 0)]
         motion = simulate(starts, 5.0, ice=fcv1, impact=Impact(0.75), step=5e-4, keep_every=4)
         seen = watch(motion, rng, sd=0.001)
-        e = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
+        e = estimate_locally(seen, detect_hits(seen, RADIUS), radius=RADIUS).restitution
         assert e.value is not None
         assert e.stderr is not None
         assert e.stderr < 0.02
@@ -29,7 +29,7 @@ def test_long_glides_on_ice_that_slows_slow_stones_more() -> None:
 def test_a_hit_at_which_a_hidden_stone_takes_the_momentum_tells_no_restitution() -> None:
     third = Start(0.05, 0.36)  # struck 0.1 s after the hit
     seen = watch(hit_motion(1.2, 0.05, others=[third]), np.random.default_rng(3), sd=0.002)
-    contacts = [c for c in find_contacts(seen, RADIUS) if c.stones == ("A", "B")]
+    contacts = [c for c in detect_hits(seen, RADIUS) if c.stones == ("A", "B")]
     hidden = seen[seen["stone"] != "C"]
     hidden = hidden[(hidden["t"] < contacts[0].t) | (hidden["t"] > contacts[0].t + 0.15)]
     found = estimate_locally(hidden, contacts, radius=RADIUS)
@@ -44,7 +44,7 @@ def test_a_hit_at_which_a_hidden_stone_takes_the_momentum_tells_no_restitution()
 def test_a_restitution_above_1_is_odd(restitution: float, said: int) -> None:
     motion = hit_motion(1.2, 0.05, restitution=restitution)
     seen = watch(motion, np.random.default_rng(8), sd=0.002)
-    found = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    found = estimate_locally(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert sum("is more than 1" in text for text in found.warnings) == said
     (hit,) = found.collisions
     assert (hit.restitution is None) == bool(said)
@@ -65,7 +65,7 @@ def test_ice_that_bends_slow_ways_leads_no_restitution_astray(offset: float) -> 
     )
     seen = watch(motion, np.random.default_rng(1), fps=60, sd=1e-5)
     seen[["sd_x", "sd_y"]] = 0.003
-    found = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    found = estimate_locally(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert found.restitution.value == pytest.approx(0.83, abs=0.002)
 
 
@@ -79,7 +79,7 @@ def test_hits_beside_one_that_is_not_told_tell_no_restitution(turn: float) -> No
     start = [Start(0.02 if turn else 0.0, -1.5, 0.0, 1.4), Start(0.0, 0.0), *further]
     motion = simulate(start, 3.0, impact=Impact(0.83), step=2e-4, keep_every=10)
     seen = watch(motion, np.random.default_rng(4), sd=0.001)
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     if turn:
         contacts = tuple(hit for hit in contacts if hit.stones != ("B", "C"))
     found = estimate_locally(seen, contacts, radius=RADIUS)
@@ -109,7 +109,7 @@ def test_no_ice_draws_the_restitution_of_a_fast_hit_aside(ice: Ice, span: float)
         noise = rng.normal(0, 0.01, (len(truth), 2))
         for sign in (1, -1):
             seen = truth.assign(**{k: truth[k] + sign * noise[:, i] for i, k in enumerate("xy")})
-            e = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS).restitution
+            e = estimate_locally(seen, detect_hits(seen, RADIUS), radius=RADIUS).restitution
             assert e.value is not None
             assert e.stderr is not None
             pulls.append((e.value - Impact().restitution) / e.stderr)

@@ -8,10 +8,10 @@ import pytest
 from numpy.typing import NDArray
 
 from curlshot.physics.filter.stretch import ANGLE_MEMORY, PLACE_MEMORY
-from curlshot.physics.local_fit.contacts import cut_all, find_contacts
 from curlshot.physics.local_fit.fit import fit_shot
+from curlshot.physics.local_fit.hit_detection import cut_all, detect_hits
 from curlshot.physics.local_fit.noise import BRIEF, FEWEST, Noise, Run, _square, noises
-from curlshot.physics.local_fit.shot_fit import Deceleration
+from curlshot.physics.local_fit.solution import Deceleration
 from curlshot.physics.local_fit.traces import local_residuals, traces
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, lasting, watch
 
@@ -37,7 +37,7 @@ def shots(*, given: bool = True, slow: float = 0.0, turned: float = 0.0) -> list
 
 def told(seen: pd.DataFrame) -> dict[str, Noise]:
     known = traces(seen)
-    cut, _ = cut_all(known, find_contacts(seen, RADIUS), RADIUS)
+    cut, _ = cut_all(known, detect_hits(seen, RADIUS), RADIUS)
     pieces = [replace(piece, opens=None, closes=None) for piece in cut]
     return noises(
         fit_shot(known, pieces, (), RADIUS, deceleration=Deceleration(0.0, 3.0, 3.0)), known

@@ -9,10 +9,10 @@ import pytest
 from curlshot.data.results import Estimate
 from curlshot.physics.filter.stretch import ANGLE_MEMORY
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.physics.local_fit.noise import noises
-from curlshot.physics.local_fit.shot_fit import ShotFit
+from curlshot.physics.local_fit.solution import LocalFit
 from curlshot.physics.local_fit.spins import spin_on, spins_at
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.synthetic.physics import Motion
@@ -22,13 +22,13 @@ HIT = 1.0
 """Time of the hit in `hit_motion`, s."""
 
 
-def fitted(seen: pd.DataFrame) -> tuple[ShotFit, Mapping[str, Trace]]:
-    local = estimate_locally(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+def fitted(seen: pd.DataFrame) -> tuple[LocalFit, Mapping[str, Trace]]:
+    local = estimate_locally(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert local.fit is not None
     return local.fit, local.known
 
 
-def beside(fit: ShotFit, known: Mapping[str, Trace]) -> dict[str, tuple[Estimate, Estimate]]:
+def beside(fit: LocalFit, known: Mapping[str, Trace]) -> dict[str, tuple[Estimate, Estimate]]:
     each = spins_at(fit, 0, known, noises(fit, known), np.ones(2))
     return dict(zip(fit.meetings[0].stones, each, strict=True))
 
@@ -67,7 +67,7 @@ def test_spins_are_those_of_the_tracks_filter(monkeypatch: pytest.MonkeyPatch) -
     seen = watch(hit_motion(), np.random.default_rng(5)).assign(sd_theta=0.05)
     seen["rise_a"], seen["rise_b"] = 0.1 * np.sin(seen["theta"]), 0.1 * np.cos(seen["theta"])
     fit, known = fitted(seen)
-    tracks = smooth(seen, find_contacts(seen, RADIUS), radius=RADIUS)
+    tracks = smooth(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     noise = noises(fit, known)
     for side, frame in ((0, 10), (1, 50)):
         row = tracks[(tracks["stone"] == "A") & (tracks["frame"] == frame)].iloc[0]

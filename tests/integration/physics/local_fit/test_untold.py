@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.tests.helpers.physics.untold import FPS, E, R, glide, hit, said, table
 
@@ -20,7 +20,7 @@ from curlshot.tests.helpers.physics.untold import FPS, E, R, glide, hit, said, t
 )
 def test_hit_in_long_gaps_is_found(hidden: dict[str, tuple[float, float]]) -> None:
     detections = table(*hit(1.0), hidden)
-    (contact,) = find_contacts(detections, R)
+    (contact,) = detect_hits(detections, R)
     assert set(contact.stones) == {"A", "B"}
     assert contact.t == pytest.approx(1.5, abs=4 * contact.stderr_t + 0.005)
     local = estimate_locally(detections, [contact], radius=R)
@@ -37,7 +37,7 @@ def test_near_miss_says_nothing(hidden: dict[str, tuple[float, float]]) -> None:
     places["A"] = glide(start, np.array([0.0, -1.15]), t)
     places["B"] = np.zeros((len(t), 2))
     detections = table(t, places, hidden)
-    assert find_contacts(detections, R) == ()
+    assert detect_hits(detections, R) == ()
     assert said(detections) == []
 
 
@@ -50,7 +50,7 @@ def test_stone_that_light_moves_a_little_says_nothing() -> None:
         (t > 2.0)[:, None], glide(places["C"][0], np.array([0.3, 0.0]), t - 2.0), places["C"][0]
     )
     (text,) = said(table(t, places, {}))
-    assert "the motion of C changes at 2.0" in text
+    assert "the velocity of C changes at 2.0" in text
 
 
 @pytest.mark.parametrize("step", [0.4, 0.6, 1.0])
@@ -58,5 +58,5 @@ def test_tables_marked_once_in_a_while_say_nothing_of_a_hit_that_is_told(step: f
     t, places = hit(1.0, at=4.0, end=14.0)
     detections = table(t, places, {})
     few = detections[detections["frame"] % round(step * FPS) == 0].reset_index(drop=True)
-    assert len(find_contacts(few, R)) == 1
+    assert len(detect_hits(few, R)) == 1
     assert not any("motion of" in text or "hit" in text for text in said(few))

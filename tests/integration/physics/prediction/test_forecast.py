@@ -10,9 +10,9 @@ import pytest
 from curlshot.data.results import Estimate, Prediction
 from curlshot.physics.estimate import estimate
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.prediction.forecast import ASSUMED, assumed, predict
-from curlshot.physics.whole_shot.priors import Priors
+from curlshot.physics.shot_fit.priors import Priors
 from curlshot.synthetic.physics import Ice, Impact, Motion, Start
 from curlshot.synthetic.physics import simulate as move
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
@@ -20,7 +20,7 @@ from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 def forecasts(seen: pd.DataFrame, *laws: Priors) -> Iterator[dict[str, Prediction]]:
     """With each of the laws, from one estimate."""
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     tracks = smooth(seen, contacts, radius=RADIUS)
     found = estimate(seen, contacts, radius=RADIUS)
     return (predict(seen, tracks, found, radius=RADIUS, laws=each) for each in laws)
@@ -44,11 +44,11 @@ def test_last_places_are_predicted_from_before_the_hit() -> None:
         assert sd is not None
         assert error is not None
         assert error < 2 * sd
-    soon = frictional.error_after
+    soon = frictional.error_at_comparison
     assert sorted(soon) == ["A", "B", "C"]
     assert all(error is not None and error < 0.02 for error in soon.values())
-    assert sorted(frictional.sd_after) == ["A", "B", "C"]
-    for stone, sd in frictional.sd_after.items():  # errors grow with time
+    assert sorted(frictional.sd_at_comparison) == ["A", "B", "C"]
+    for stone, sd in frictional.sd_at_comparison.items():  # errors grow with time
         assert sd is not None
         assert (soon[stone] or 0.0) < 2 * sd < 2 * (frictional.rest_sd[stone] or 0.0)
     assert made["rigid-body"].rmse is None
@@ -145,7 +145,7 @@ def test_no_hit_is_no_prediction() -> None:
 @pytest.mark.parametrize("frames", [1, 3])
 def test_too_little_before_the_hit_is_said(frames: int) -> None:
     seen = watch(hit_motion(1.2, 0.08), np.random.default_rng(4))
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     early = seen["t"] < contacts[0].t
     kept = seen[~early | seen["frame"].isin(np.sort(seen["frame"][early].unique())[-frames:])]
     kept = kept.reset_index(drop=True)
@@ -182,10 +182,10 @@ def far_shot(ice: Ice, seed: int, before: float = 2.5) -> pd.DataFrame:
 def test_a_shot_is_foretold_with_the_ice_that_the_whole_of_it_has_shown(ice: Ice) -> None:
     # With constant friction and no curl the stones would end decimetres off.
     seen = far_shot(ice, 3)
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     found = estimate(seen, contacts, radius=RADIUS)
-    assert found.whole is not None
-    shape = {name: Estimate(found.whole[name].value, 0.0) for name in ("slope", "v_c", "turn")}
+    assert found.shot_fit is not None
+    shape = {name: Estimate(found.shot_fit[name].value, 0.0) for name in ("slope", "v_c", "turn")}
     friction = Estimate(found.friction.value, found.friction.stderr)
     laws = replace(known(), friction=friction, **shape)
     tracks = smooth(seen, contacts, radius=RADIUS)
@@ -238,7 +238,7 @@ def small_discs(mu: float, e: float, **known: Estimate) -> Prediction:
     motion = hit_motion(1.5, 0.08, before=0.6, after=1.0, friction=mu / SMALL, restitution=e)
     seen = watch(motion, np.random.default_rng(2), sd=0.005)
     seen[["x", "y", "sd_x", "sd_y"]] *= SMALL
-    contacts = find_contacts(seen, radius)
+    contacts = detect_hits(seen, radius)
     tracks = smooth(seen, contacts, radius=radius)
     found = estimate(seen, contacts, radius=radius)
     laws = replace(assumed(radius), **known)
@@ -263,7 +263,7 @@ def test_discs_that_are_no_stones_may_bounce_otherwise(restitution: float) -> No
 
 def misled(before: pd.DataFrame, seen: pd.DataFrame) -> dict[str, Prediction]:
     """Predict what was seen from something else than was seen before the hit."""
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     tracks = smooth(seen, contacts, radius=RADIUS)
     return predict(before, tracks, estimate(seen, contacts, radius=RADIUS), radius=RADIUS)
 
@@ -292,5 +292,5 @@ def test_hits_that_are_foretold_and_did_not_happen_are_named() -> None:
     moved.loc[moved["stone"] == "C", "x"] -= aside.x  # into the way of the stone that is hit
     moved.loc[moved["stone"] == "C", "y"] += 0.7 - aside.y
     wrong = misled(moved, seen)["frictional"]
-    assert wrong.note == "as foretold, B and C hit each other, which they did not"
+    assert wrong.note == "in the prediction, B and C hit each other; in the clip they did not"
     assert (wrong.rmse or 0.0) > 3 * (right.rmse or 1.0)

@@ -8,9 +8,9 @@ import pytest
 from curlshot.data.results import Estimate
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.prediction.forecast import ASSUMED, predict
-from curlshot.physics.prediction.hindcast import simulate_measured
+from curlshot.physics.prediction.replay import simulate_measured
 from curlshot.physics.prediction.throws import come_in, later_throws
 from curlshot.tests.helpers.physics.throws import MU, SECOND, two_throws
 from curlshot.tests.helpers.physics.watch import RADIUS
@@ -19,7 +19,7 @@ from curlshot.tests.helpers.physics.watch import RADIUS
 @pytest.fixture(scope="module")
 def both() -> tuple[pd.DataFrame, pd.DataFrame, Estimates]:
     seen = two_throws()
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     assert [hit.stones for hit in hits] == [("A", "B"), ("C", "A")]
     return seen, smooth(seen, hits, radius=RADIUS), estimate(seen, hits, radius=RADIUS)
 
@@ -50,11 +50,11 @@ def test_what_another_throw_does_is_not_foretold(both) -> None:
 
 def test_without_a_fit_of_the_whole_it_is_not_simulated_again(both) -> None:
     _, tracks, found = both
-    alone = simulate_measured(tracks, replace(found, whole=None), radius=RADIUS)
+    alone = simulate_measured(tracks, replace(found, shot_fit=None), radius=RADIUS)
     assert set(alone.samples["frictional"]["stone"]) == {"A", "B"}
     assert alone.scores["frictional"].rest_error.keys() == {"B"}
     whole = simulate_measured(tracks, found, radius=RADIUS)
-    assert found.whole is not None
+    assert found.shot_fit is not None
     assert set(whole.samples["frictional"]["stone"]) == {"A", "B", "C"}
     assert whole.scores["frictional"].rest_error.keys() == {"A", "B", "C"}
 

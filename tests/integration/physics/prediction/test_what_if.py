@@ -7,8 +7,8 @@ import numpy as np
 from curlshot.data.results import Input, Results
 from curlshot.physics.estimate import estimate
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
-from curlshot.physics.prediction.hindcast import simulate_measured
+from curlshot.physics.local_fit.hit_detection import detect_hits
+from curlshot.physics.prediction.replay import simulate_measured
 from curlshot.physics.prediction.start import measured_start
 from curlshot.physics.prediction.what_if import odds, sample
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
@@ -20,7 +20,7 @@ def test_a_shot_thrown_again_ends_as_far_from_where_it_did_as_is_stated() -> Non
     for seed in range(6):
         motion = hit_motion(1.6, 0.06, before=1.2, after=1.5)
         table = watch(motion, np.random.default_rng(seed), sd=0.003)
-        hits = find_contacts(table, RADIUS)
+        hits = detect_hits(table, RADIUS)
         found = estimate(table, hits, radius=RADIUS)
         tracks = smooth(table, hits, radius=RADIUS)
         again = simulate_measured(tracks, found, radius=RADIUS)

@@ -6,13 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from curlshot.data.results import Joint
+from curlshot.data.results import JointEstimate
 from curlshot.report import figures
 from curlshot.tests.helpers.report.drawn import check_layout
 
 
 def test_posterior_from_covariance_and_from_samples(shot):
-    laws = shot.results.laws
+    laws = shot.results.joint_estimate
     rng = np.random.default_rng(4)
     samples = pd.DataFrame(
         rng.multivariate_normal(laws.values, laws.cov, 3000), columns=list(laws.names)
@@ -22,7 +22,7 @@ def test_posterior_from_covariance_and_from_samples(shot):
         check_layout(figure)
         assert len(figure.axes) == 9
         assert figure.axes[0].get_title().endswith("\n0.831 ± 0.012")
-    one = Joint(("friction",), (0.0109,), ((1e-8,),))
+    one = JointEstimate(("friction",), (0.0109,), ((1e-8,),))
     check_layout(figures.posterior_figure(one))
     with pytest.raises(ValueError, match="nothing to draw"):
         figures.posterior_figure(None, pd.DataFrame({"other": [1.0]}))
@@ -32,7 +32,9 @@ def test_posterior_from_covariance_and_from_samples(shot):
 def test_marks_of_well_known_values_stand_apart(middle, sd):
     names = ("restitution", "friction", "stone_friction")
     cov = np.diag(np.square([80 * sd, sd, 100 * sd]))
-    figure = figures.posterior_figure(Joint(names, (0.834, middle, 0.0496), tuple(map(tuple, cov))))
+    figure = figures.posterior_figure(
+        JointEstimate(names, (0.834, middle, 0.0496), tuple(map(tuple, cov)))
+    )
     check_layout(figure)
     for ax in figure.axes[6:]:
         low, high = ax.get_xlim()
@@ -44,6 +46,6 @@ def test_marks_of_well_known_values_stand_apart(middle, sd):
 
 
 def test_the_lines_across_a_row_are_those_of_its_numbers(shot):
-    grid = np.reshape(figures.posterior_figure(shot.results.laws).axes, (3, 3))
+    grid = np.reshape(figures.posterior_figure(shot.results.joint_estimate).axes, (3, 3))
     left, middle = (ax.yaxis.get_majorticklocs() for ax in grid[2, :2])
     np.testing.assert_allclose(middle, left)

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from curlshot.data.results import Misfit
+from curlshot.data.results import TrackResidual
 from curlshot.report import figures
 from curlshot.tests.helpers.report.drawn import check_layout, residuals
 
@@ -31,11 +31,14 @@ def test_wild_detections_are_marks_at_the_edge(shot):
         assert list(mark.get_xdata()) == [table.loc[row, "t"]]
         assert mark.get_ydata()[0] == (high if sign > 0 else low)
     said = [entry.get_text() for entry in figure.legends[0].get_texts()]
-    assert {"± 2 sd as stated", "beyond the edge"} <= set(said)
+    assert {"± 2 sd, as estimated", "outside the plot"} <= set(said)
 
 
 def test_what_the_whole_shot_leaves_out_has_a_bar_in_the_colour_of_its_stone(shot):
-    misfits = (Misfit("A", 0.2, 0.9, 6.1, True, True), Misfit("B", 0.2, 0.9, 0.8, False, False))
+    misfits = (
+        TrackResidual("A", 0.2, 0.9, 6.1, True, True),
+        TrackResidual("B", 0.2, 0.9, 0.8, False, False),
+    )
     figure = figures.residuals_figure(residuals(shot), shot.results.collisions, misfits)
     check_layout(figure)
     bars = [
@@ -43,4 +46,4 @@ def test_what_the_whole_shot_leaves_out_has_a_bar_in_the_colour_of_its_stone(sho
     ]
     assert bars == [[0.2, 0.9], [0.2, 0.9]]
     said = [entry.get_text() for entry in figure.legends[0].get_texts()]
-    assert "left out of the whole shot" in said
+    assert "down-weighted in the shot fit" in said

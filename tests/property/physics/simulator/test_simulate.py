@@ -14,7 +14,7 @@ from curlshot.physics.curl import NoCurl
 from curlshot.physics.ice import Constant, IceLaw
 from curlshot.physics.impact import Frictional, Impact, PointMass
 from curlshot.physics.simulator.simulate import simulate
-from curlshot.physics.simulator.simulation import Hit, StoneStart
+from curlshot.physics.simulator.simulation import HitEvent, StoneStart
 from curlshot.tests.helpers.physics.simulate import LAWS, R, energies, momentum, shot
 
 MODELS: list[Impact] = [PointMass(0.8), Frictional(0.8, 0.2), Frictional(1.0, 0.0)]
@@ -122,7 +122,7 @@ def test_laws_of_conservation(stones: tuple[StoneStart, ...], law: IceLaw, model
     assert total[-1] == 0
 
 
-def angular(hit: Hit, states: dict[str, StoneState]) -> float:
+def angular(hit: HitEvent, states: dict[str, StoneState]) -> float:
     total = 0.0
     for name in hit.stones:
         s = states[name]
@@ -168,7 +168,7 @@ def test_mirror_and_rotation(stones: tuple[StoneStart, ...], angle: float, mirro
         assert (two.rest[name].x, two.rest[name].y) == pytest.approx(expected, abs=1e-6)
 
 
-def closing(hit: Hit) -> float:
+def closing(hit: HitEvent) -> float:
     one, two = (hit.before[name] for name in hit.stones)
     return (one.vx - two.vx) * hit.normal[0] + (one.vy - two.vy) * hit.normal[1]
 

@@ -8,14 +8,14 @@ import pytest
 from curlshot.physics.filter import rate_filter, reference_filter
 from curlshot.physics.filter.stretch import SPIN_LOSS, Model, Stretch
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.tests.helpers.physics.rate_filter import random_stretch
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
 
 def test_tracks_are_the_same_by_either_filter() -> None:
     seen = watch(hit_motion(1.2, 0.08, after=1.5), np.random.default_rng(5), sd=0.006)
-    contacts = find_contacts(seen, RADIUS)
+    contacts = detect_hits(seen, RADIUS)
     fast = smooth(seen, contacts, radius=RADIUS)
     slow = smooth(seen, contacts, radius=RADIUS, run=reference_filter.filtered)
     numbers = fast.columns.drop(["stone", "team"])

@@ -10,7 +10,7 @@ from curlshot.physics.local_fit.constraints import (
     acceleration_prior,
     contact_constraints,
 )
-from curlshot.physics.local_fit.shot_fit import Deceleration, Meeting
+from curlshot.physics.local_fit.solution import Deceleration, Meeting
 from curlshot.tests.helpers.physics.watch import RADIUS
 
 RANKS = ((0, 1), (2, 3))

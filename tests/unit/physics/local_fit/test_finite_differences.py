@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from curlshot.data.results import Collision, Estimate
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.data.results import Estimate, Hit
 from curlshot.physics.local_fit.finite_differences import by_finite_differences
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.traces import traces
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 
@@ -14,8 +14,8 @@ from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 def test_stones_that_part_or_lie_still_tell_nothing() -> None:
     motion = hit_motion(1.5, 0.0, before=1.0, after=1.0)
     known = traces(watch(motion, np.random.default_rng(5), sd=0.001))
-    (contact,) = find_contacts(watch(motion, np.random.default_rng(5), sd=0.001), RADIUS)
-    late = Collision(
+    (contact,) = detect_hits(watch(motion, np.random.default_rng(5), sd=0.001), RADIUS)
+    late = Hit(
         contact.t + 0.6, 0.0, contact.stones, contact.normal, None, None, {}, {}
     )  # fmt: skip
     assert by_finite_differences(known, [late], {}).hits == (Estimate(),)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from curlshot.physics.local_fit.contacts import cut_all
 from curlshot.physics.local_fit.fit import _first_guess, _origin, fit_shot
+from curlshot.physics.local_fit.hit_detection import cut_all
 from curlshot.physics.local_fit.segments import Piece
-from curlshot.physics.local_fit.shot_fit import Deceleration, Meeting
+from curlshot.physics.local_fit.solution import Deceleration, Meeting
 from curlshot.physics.local_fit.traces import Trace, traces
 from curlshot.tests.helpers.physics.watch import RADIUS, hit_motion, watch
 

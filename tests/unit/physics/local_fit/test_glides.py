@@ -36,7 +36,7 @@ def test_the_friction_at_1_m_s_is_as_unsure_as_the_power_of_the_speed() -> None:
 
 def test_a_path_turns_at_its_rate_half_way() -> None:
     (glide,) = local(slowed(0.25, 10.0, turn=0.01)).glides
-    assert glide.turn == pytest.approx(0.01, rel=0.03)
+    assert glide.turn_rate == pytest.approx(0.01, rel=0.03)
 
 
 def test_a_law_goes_with_the_friction_at_1_m_s() -> None:

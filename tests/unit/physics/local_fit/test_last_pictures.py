@@ -11,7 +11,7 @@ import pytest
 from curlshot.data.sheet import STONE
 from curlshot.data.tracks import Columns
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import Contact, find_contacts
+from curlshot.physics.local_fit.hit_detection import HitCandidate, detect_hits
 from curlshot.physics.local_fit.last_pictures import widen_last
 
 RADIUS, SD, SPEED, HIT = STONE.radius, 0.0006, 0.3, 2.0
@@ -29,7 +29,7 @@ def tracks(
     end: float,
     *,
     aside: float = 0.0,
-    hits: tuple[Contact, ...] | None = None,
+    hits: tuple[HitCandidate, ...] | None = None,
     seed: int = 0,
     masses: Mapping[str, float] | None = None,
 ) -> pd.DataFrame:
@@ -42,7 +42,7 @@ def tracks(
         seen |= {"theta": 0.4 * (t if name == "A" else 0 * t), "sd_theta": 0.01}
         parts.append(pd.DataFrame({**seen, "sd_x": SD, "sd_y": SD, "true": y}))
     table = pd.concat(parts, ignore_index=True)
-    found = find_contacts(table, RADIUS) if hits is None else hits
+    found = detect_hits(table, RADIUS) if hits is None else hits
     return smooth(table, found, radius=RADIUS, masses=masses).assign(true=table["true"])
 
 

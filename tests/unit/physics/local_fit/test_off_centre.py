@@ -7,7 +7,7 @@ import pytest
 
 from curlshot.physics.local_fit.breaks import breaks
 from curlshot.physics.local_fit.off_centre import centred
-from curlshot.physics.local_fit.shot_fit import Meeting
+from curlshot.physics.local_fit.solution import Meeting
 from curlshot.physics.local_fit.traces import Trace
 from curlshot.tests.helpers.physics.off_centre import (
     AHEAD,

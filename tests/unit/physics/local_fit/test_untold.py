@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.local_fit.local import estimate_locally
 from curlshot.tests.helpers.physics.untold import FPS, Floats, R, glide, hit, said, table
 
@@ -24,7 +24,7 @@ def test_stone_struck_in_sight_by_one_out_of_sight_is_said() -> None:
 
 def test_ways_that_meet_where_one_is_lost_and_one_found_are_said() -> None:
     (text,) = said(table(*hit(1.0), {"A": (1.2, 9.0), "B": (-1.0, 2.2)}))
-    assert "A is last seen at 1.17" in text and "B first at 2.2" in text
+    assert "A was last detected at 1.17" in text and "B first at 2.2" in text
 
 
 def test_change_by_what_is_never_seen_is_said() -> None:
@@ -33,7 +33,7 @@ def test_change_by_what_is_never_seen_is_said() -> None:
     (text,) = said(table(t, places, {"B": (1.0, 2.0)}))
     assert text.startswith("something hit B out of sight between 0.97 and 2.03")
     (text,) = said(table(t, places, {}))
-    assert "the motion of B changes at 1.5" in text
+    assert "the velocity of B changes at 1.5" in text
 
 
 def test_stone_that_stops_touching_is_said_with_its_time() -> None:
@@ -117,14 +117,14 @@ def test_each_change_of_a_stone_s_motion_is_said() -> None:
     way = np.where((t > 1.0)[:, None], glide(np.zeros(2), np.array([0.0, -0.8]), t - 1.0), 0.0)
     turned = glide(way[int(np.searchsorted(t, 3.0))], np.array([0.6, -0.2]), t - 3.0)
     (text,) = alone(np.where((t > 3.0)[:, None], turned, way), t)
-    assert "the motion of A changes at 1.0" in text and " and at 3.0" in text
+    assert "the velocity of A changes at 1.0" in text and " and at 3.0" in text
 
 
 def test_many_changes_of_a_motion_are_counted() -> None:
     t = np.arange(0.0, 8.0, 1 / FPS)
     zigzag = np.column_stack([0.3 * np.abs((t + 0.5) % 2 - 1), -0.5 * t])
     (text,) = alone(zigzag, t)
-    assert "the motion of A changes 8 times between 0.4" in text
+    assert "the velocity of A changes 8 times between 0.4" in text
 
 
 def test_stone_that_goes_on_under_another_name_hits_nothing() -> None:
@@ -152,20 +152,22 @@ def test_stone_moved_after_a_hit_that_is_told_is_not_said_to_be_moved_by_it() ->
     pushed = glide(places["B"][at], np.array([0.9, -0.3]), t - t[at])
     places["B"] = np.where((t < t[at])[:, None], places["B"], pushed)
     texts = [text for text in said(table(t, places, {})) if "B" in text]
-    assert len(texts) == 1 and "and no stone is seen" in texts[0]
+    assert len(texts) == 1 and "without a visible stone" in texts[0]
 
 
 @pytest.mark.parametrize("times", [0.3, 3.0])
 def test_hit_that_discs_of_this_radius_cannot_make_asks_for_the_scale(times: float) -> None:
     t, places = hit(1.0)
     seen = table(t, places, {})
-    contacts = find_contacts(seen, R * times)
+    contacts = detect_hits(seen, R * times)
     assert contacts == ()
     warnings = estimate_locally(seen, contacts, radius=R * times).warnings
-    (text,) = [text for text in warnings if "motion" in text]
-    assert text.startswith(("the motion of A and B changes at 1.", "the motion of B and A"))
-    assert re.search(r"as if they hit each other, 0\.(29|3|31) m apart where two radii are", text)
-    assert text.endswith("are the scale, the unit and the radius right?")
+    (text,) = [text for text in warnings if "velocities" in text]
+    assert text.startswith(("the velocities of A and B change at 1.", "the velocities of B and A"))
+    assert re.search(
+        r"as if they hit each other, but 0\.(29|3|31) m apart, where two radii are", text
+    )
+    assert text.endswith("check scale, unit and radius")
 
 
 @pytest.mark.parametrize(
@@ -190,7 +192,7 @@ def test_stones_that_hands_clear_at_one_time_ask_for_no_scale(
     }
     texts = said(table(t, places, {}))
     assert not any("scale" in text for text in texts)
-    assert sum("no stone is seen that hit it" in text for text in texts) == 2
+    assert sum("without a visible stone that hit it" in text for text in texts) == 2
 
 
 def test_one_stone_under_two_names_at_once_asks_for_no_scale() -> None:
@@ -207,8 +209,8 @@ def test_several_stones_that_move_at_once_ask_for_the_camera(count: int) -> None
     corners = [(-1.5, 1.0), (1.0, 1.5), (0.9, -1.0), (-1.0, -1.2)]
     places = {name: at + shove for name, at in zip("ABCD"[:count], corners, strict=False)}
     texts = said(table(t, places, {}))
-    asked = [text for text in texts if "was the camera moved" in text]
-    lone = [text for text in texts if "no stone is seen that hit it" in text]
+    asked = [text for text in texts if "did the camera move" in text]
+    lone = [text for text in texts if "without a visible stone that hit it" in text]
     assert (len(asked), len(lone)) == ((0, 2) if count < 3 else (2, 0))
     for text in asked:
         assert ", ".join("ABCD"[: count - 1]) + f" and {'ABCD'[count - 1]} changes at" in text

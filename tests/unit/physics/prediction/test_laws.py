@@ -5,21 +5,28 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from curlshot.data.results import Collision, Estimate, Friction, Joint, MeasuredState, Told
+from curlshot.data.results import (
+    Estimate,
+    Friction,
+    Hit,
+    JointEstimate,
+    MeasuredState,
+    NotedEstimate,
+)
 from curlshot.physics.curl import FCV1Curl, NoCurl
 from curlshot.physics.estimate import Estimates
 from curlshot.physics.ice import Constant, Fit
 from curlshot.physics.prediction.laws import LEAST_FRICTION, between_stones, measured_laws
-from curlshot.physics.whole_shot.priors import LITERATURE
+from curlshot.physics.shot_fit.priors import LITERATURE
 
 R = 0.1455
 
 
-def hit(stone_friction: float | None, stderr: float | None, aside: float = 0.0) -> Collision:
+def hit(stone_friction: float | None, stderr: float | None, aside: float = 0.0) -> Hit:
     """A head-on hit of equal stones, e = 0.8, with a tangential velocity given to B."""
     before = {"A": MeasuredState(0, -0.291, 0, 1.0), "B": MeasuredState(0, 0, 0, 0)}
     after = {"A": MeasuredState(0, -0.291, -aside, 0.1), "B": MeasuredState(0, 0, aside, 0.9)}
-    return Collision(
+    return Hit(
         t=1.0, stderr_t=0.001, stones=("A", "B"), normal=(0.0, 1.0), restitution=0.8, stderr=0.01,
         before=before, after=after, momentum_residual=0.0, stderr_momentum=0.01, energy_lost=0.1,
         stone_friction=stone_friction, stderr_stone_friction=stderr,
@@ -31,7 +38,7 @@ def test_hits_are_weighted_and_the_whole_shot_comes_first() -> None:
     found = between_stones(None, hits)
     assert found.value == pytest.approx((0.04 * 4 + 0.10) / 5)
     assert found.stderr == pytest.approx((1 / 0.01**2 + 1 / 0.02**2) ** -0.5)
-    joint = Joint(("friction", "stone_friction"), (0.01, 0.06), ((1e-8, 0.0), (0.0, 4e-6)))
+    joint = JointEstimate(("friction", "stone_friction"), (0.01, 0.06), ((1e-8, 0.0), (0.0, 4e-6)))
     assert between_stones(joint, hits) == Estimate(0.06, pytest.approx(0.002))
     assert between_stones(None, hits[2:]) == Estimate()
 
@@ -40,7 +47,7 @@ def test_the_distance_at_which_stones_meet_is_a_law_of_the_shot() -> None:
     assert measured_laws(Estimates(), R).size == Estimate(1.0, 0.0)
 
     class Shot(Estimates):
-        laws = Joint(("restitution", "size"), (0.8, 0.996), ((1e-4, 0.0), (0.0, 4e-6)))
+        laws = JointEstimate(("restitution", "size"), (0.8, 0.996), ((1e-4, 0.0), (0.0, 4e-6)))
 
     size = measured_laws(Shot(), R).size
     assert size.value == 0.996
@@ -49,7 +56,7 @@ def test_the_distance_at_which_stones_meet_is_a_law_of_the_shot() -> None:
 
 def test_loss_of_spin_and_inertia_are_as_the_shot_tells_else_as_usual() -> None:
     class Shot(Estimates):
-        laws = Joint(("loss", "inertia"), (0.004, 0.45), ((1e-6, 0.0), (0.0, 1e-4)))
+        laws = JointEstimate(("loss", "inertia"), (0.004, 0.45), ((1e-6, 0.0), (0.0, 1e-4)))
 
     untold, told = measured_laws(Estimates(), R), measured_laws(Shot(), R)
     assert untold.curl == FCV1Curl(turn=0.0, loss=0.0125)
@@ -75,7 +82,7 @@ def test_what_a_shot_does_not_tell_is_assumed_with_its_doubt() -> None:
 
 def test_measured_laws_are_taken_as_they_are_if_they_can_be() -> None:
     falling = Friction(0.008, 0.0002, "fit", 0.002, 0.064, 0.0061)
-    shot = Estimates(Estimate(1.02, 0.03), falling, curl=Told(0.006, 0.001))
+    shot = Estimates(Estimate(1.02, 0.03), falling, curl=NotedEstimate(0.006, 0.001))
     laws = measured_laws(shot, R)
     assert laws.restitution == Estimate(1.0, 0.03)
     assert laws.ice == Fit(0.002, 0.064, 0.0061)

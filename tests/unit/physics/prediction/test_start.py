@@ -72,15 +72,15 @@ def test_what_was_not_measured_is_assumed_aloud() -> None:
     blind = replace(results, restitution=Estimate(), friction=Friction(), collisions=())
     assumed = measured_start(tracks, blind, ensemble).assumed
     assert assumed == {
-        "restitution": "restitution not measured: 0.8, as in the fit of the whole shot",
-        "friction": f"friction not measured: {MU:.2g}, as in the fit of the whole shot",
+        "restitution": "restitution not measured: 0.8, as in the shot fit",
+        "friction": f"friction not measured: {MU:.2g}, as in the shot fit",
         "stone_friction": "friction between the stones assumed to be 0.05",
     }
     usual = replace(ensemble, likely=replace(HIT, impact=Frictional(0.83), ice=Constant(0.0109)))
     assumed = measured_start(tracks, blind, usual).assumed
     assert assumed["restitution"] == "restitution not measured, 0.83 assumed"
     assert assumed["friction"] == "friction not measured, 0.0109 assumed"
-    note = "friction between the stones not told: they stick"
+    note = "friction between the stones not identifiable: they stick"
     blind = replace(blind, simulations={"frictional": SimulationScore(0.001, note=note)})
     assert measured_start(tracks, blind, ensemble).assumed["stone_friction"] == note
 
@@ -101,7 +101,7 @@ def test_an_unseen_spin_is_named_with_its_error(likely: float, said: str) -> Non
         for spin in (likely, 0.3, 0.7)
     ]
     start = measured_start(blind, results, replace(ensemble, likely=shots[0], others=shots[1:]))
-    assert start.assumed == {"spin of A": f"spin of A not seen: {said} ± 0.2 rad/s taken"}
+    assert start.assumed == {"spin of A": f"spin of A not seen: {said} ± 0.2 rad/s assumed"}
 
 
 def test_without_a_sheet_no_stone_leaves_it() -> None:

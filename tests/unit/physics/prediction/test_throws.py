@@ -9,7 +9,7 @@ import pytest
 
 from curlshot.physics.estimate import Estimates, estimate
 from curlshot.physics.kalman import smooth
-from curlshot.physics.local_fit.contacts import find_contacts
+from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.prediction.start import measured_start
 from curlshot.physics.prediction.throws import along_sheet, foreseen_until, later_throws
 from curlshot.physics.simulator.simulation import StoneStart
@@ -21,7 +21,7 @@ from curlshot.tests.helpers.physics.watch import RADIUS
 @pytest.fixture(scope="module")
 def both() -> tuple[pd.DataFrame, pd.DataFrame, Estimates]:
     seen = two_throws()
-    hits = find_contacts(seen, RADIUS)
+    hits = detect_hits(seen, RADIUS)
     assert [hit.stones for hit in hits] == [("A", "B"), ("C", "A")]
     return seen, smooth(seen, hits, radius=RADIUS), estimate(seen, hits, radius=RADIUS)
 

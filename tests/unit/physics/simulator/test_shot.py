@@ -152,8 +152,8 @@ def test_files_that_are_none(tmp_path: Path) -> None:
         ("missing.toml", "No such file"),
         ("", "directory"),
         ("binary.toml", "not a text in UTF-8"),
-        ("binary", "no shot; name a SHOT.toml or the folder of a run"),
-        ("tracks.csv", "no shot; name a SHOT.toml or the folder of a run"),
+        ("binary", "not a shot; name a SHOT.toml or the folder of a run"),
+        ("tracks.csv", "not a shot; name a SHOT.toml or the folder of a run"),
     ):
         with pytest.raises(InputError, match=message):
             read_shot(tmp_path / name)

@@ -3,14 +3,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from curlshot.data.results import Collision, Glide, MeasuredState
+from curlshot.data.results import Glide, Hit, MeasuredState
 from curlshot.physics.statistics.by_stone import results_by_stone
 
 
-def hit(first: str, second: str, spins: tuple[float | None, ...]) -> Collision:
+def hit(first: str, second: str, spins: tuple[float | None, ...]) -> Hit:
     a, b = (MeasuredState(0, 0, 1.0, 0, spin, sd_omega=0.1) for spin in spins)
     still = MeasuredState(0, 0, 0, 0, 0.0)
-    return Collision(
+    return Hit(
         1.0, 0.01, (first, second), (1.0, 0.0), 0.8, 0.1,
         {first: a, second: still}, {first: a, second: b},
     )  # fmt: skip
@@ -30,7 +30,7 @@ def test_each_stone_by_itself() -> None:
     a = found["A"]
     assert a.friction.value == pytest.approx(weights @ [0.010, 0.014] / weights.sum())
     assert a.friction.stderr == pytest.approx(weights.sum() ** -0.5)
-    assert (a.turn.value, a.speed) == (0.02, 1.0)
+    assert (a.turn_rate.value, a.speed) == (0.02, 1.0)
     assert (a.spin.value, a.spin.stderr) == (0.6, 0.1)
     assert found["B"].friction.value is None
     assert found["B"].spin.value is None

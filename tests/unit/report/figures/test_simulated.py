@@ -46,7 +46,7 @@ def test_stones_are_drawn_where_they_come_to_rest_and_hits_where_they_touch() ->
     one, two = (hit.before[name] for name in hit.stones)
     assert crosses == [pytest.approx(((one.x + two.x) / 2, (one.y + two.y) / 2), abs=1e-6)]
     words = {text.get_text() for text in texts(figure)}
-    assert {"where it began", "hit", "Simulated: 3 stones, 1 hit"} <= words
+    assert {"start", "hit", "Simulated: 3 stones, 1 hit"} <= words
 
 
 @pytest.mark.parametrize("house", [HOUSE, None])

@@ -24,7 +24,7 @@ def test_a_line_that_was_not_passed_in_view_has_a_reason():
     assert table["speed"].isna().all()
     assert table.loc["hog line", "note"] == "first seen 2.4 m past it"
     way = 0.8**2 / (2 * MU_G)
-    assert table.loc["tee line", "note"].startswith(f"came no nearer than {4.0 - way:.1f} m")
+    assert table.loc["tee line", "note"].startswith(f"came no closer than {4.0 - way:.1f} m")
 
 
 def test_stones_from_the_other_end_pass_the_other_hog_line():

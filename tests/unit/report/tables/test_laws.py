@@ -21,8 +21,8 @@ def test_laws_stand_beside_the_literature_for_curling_stones_only(shot):
 def test_methods_laws_and_stones_are_listed(shot):
     methods = tables.method_table(shot.results).set_index("method")
     assert methods.loc["local", "hit 1"] == 0.83
-    assert np.isnan(methods.loc["global", "hit 2"])
-    assert methods.loc["global", "note"] == "one fit"
+    assert np.isnan(methods.loc["shot_fit", "hit 2"])
+    assert methods.loc["shot_fit", "note"] == "one fit"
     choices = tables.choice_table(shot.results)
     assert choices["laws"].tolist() == ["ice constant", "ice fit"]
     assert choices["weight"].sum() == pytest.approx(1.0)

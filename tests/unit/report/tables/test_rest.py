@@ -29,7 +29,7 @@ def test_places_are_told_of_stones_that_have_stopped():
     tracks = pd.concat([glide("A", (0.0, 3.0), 0.7, end=4.0), glide("B", (0.6, 0.8), end=4.0)])
     rest = tables.rest_table(tracks).set_index("stone")
     assert np.isnan(rest.loc["A", "x"])
-    assert rest.loc["A", "note"] == "still moves at 0.29 m/s as the clip ends"
+    assert rest.loc["A", "note"] == "still moving at 0.29 m/s at the end of the clip"
     assert rest.loc["B", "to_tee"] == pytest.approx(1.0)
     assert rest.loc["B", "sd_to_tee"] == pytest.approx(0.003)
     assert tables.shot_stone(rest.reset_index()) == (None, "where A stopped is not known")
@@ -66,7 +66,7 @@ def test_who_lies_shot_and_how_many_count():
     assert tables.shot_stone(rest)[0] == "A"
     rest = lying(places, {"A": "ours", "B": "ours", "C": "theirs", "D": "theirs"})
     assert tables.shot_stone(rest) == ("A", "ours lies 2")
-    assert tables.shot_stone(lying(places)) == ("A", "teams are not known")
+    assert tables.shot_stone(lying(places)) == ("A", "the teams are unknown")
     assert tables.shot_stone(lying({"A": 4.0})) == (None, "no stone is in the house")
 
 

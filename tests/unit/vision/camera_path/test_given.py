@@ -23,7 +23,7 @@ def test_without_edges_the_points_stand_where_the_picture_does(tmp_path: Path) -
         expected = np.array([[0.0, 0.0], [1.829, 0.0], [0.0, 1.829]])
         np.testing.assert_allclose(points, expected, atol=0.02)
         assert np.isnan(camera.rms_px) and camera.quality == 0
-    assert "no rings are seen" in track.warnings[0]
+    assert "no rings found" in track.warnings[0]
     assert "only the 3 frames" in track.warnings[0]
 
 
@@ -43,8 +43,8 @@ def test_y_is_up_whichever_way_the_circle_is_foreshortened(
         ((320, 180, 320, 180, 320, 80), "at least 13 px from the tee"),
         ((320, 180, 325, 180, 320, 80), "at least 13 px from the tee"),
         ((320, 180, 620, 180, 320, 140), "7.5 times as far"),
-        ((320, 180, np.nan, 180, 320, 80), "not in a picture of 640 × 360"),
-        ((1e9, 180, 420, 180, 320, 80), "not in a picture of 640 × 360"),
+        ((320, 180, np.nan, 180, 320, 80), "outside a frame of 640 × 360"),
+        ((1e9, 180, 420, 180, 320, 80), "outside a frame of 640 × 360"),
     ],
 )
 def test_points_that_no_house_has_are_refused(points: tuple[float, ...], match: str) -> None:
@@ -63,5 +63,5 @@ def test_a_clip_of_which_nothing_can_be_read_says_so(tmp_path: Path) -> None:
     clip = open_video(
         [tmp_path / "0.png", tmp_path / "1.png"], VideoConfig(fps=25.0, frames=(1, 1))
     )
-    with pytest.raises(InputError, match="none of the frames that are used can be read"):
+    with pytest.raises(InputError, match="none of the selected frames can be read"):
         follow_given(clip, GivenHouse.of((320, 180, 420, 180, 320, 80)))

@@ -67,7 +67,7 @@ def test_less_seen_is_known_less_and_no_error() -> None:
     least = fit_clip(few, start_rig(OVERHEAD), OVERHEAD, SIZE).cameras[0]
     sds = [float(np.sqrt(np.trace(c.place_cov((1.0, 1.0))))) for c in (whole, one, least)]
     assert sds[0] < sds[1] < sds[2]
-    assert any("y is up" in w for w in circle.warnings)
+    assert any("y is taken to be up" in w for w in circle.warnings)
     assert whole.quality > one.quality > least.quality > 0
 
 

@@ -63,7 +63,7 @@ def test_one_row_is_a_still_camera(clip: Video, tmp_path: Path) -> None:
     assert [c.frame for c in found] == [0, 1, 2]
     assert all(c.position is None and c.found and np.isnan(c.rms_px) for c in found)
     np.testing.assert_allclose(found[2].homography, cameras(1)[0].homography)
-    assert any("place is not given" in note for note in notes)
+    assert any("position of the camera is not given" in note for note in notes)
 
 
 def test_frames_without_a_camera_are_left_out(clip: Video, tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_frames_without_a_camera_are_left_out(clip: Video, tmp_path: Path) -> No
     assert any("no camera for 1 of 3 frames" in note for note in notes)
     table = camera_table(cameras(2))
     write_table(table.assign(frame=table["frame"] + 50), path)
-    with pytest.raises(InputError, match=r"frames 50 to 51, none of those"):
+    with pytest.raises(InputError, match=r"frames 50 to 51, none of the selected ones"):
         given_cameras(clip, path)
 
 
@@ -120,7 +120,7 @@ def test_a_mirrored_homography_is_refused(tmp_path: Path) -> None:
         ("", "not a table of cameras"),
         ("frame,h11,h12\n0,1,2\n1,1,2\n", "no column h13, h21"),
         ("stone,t,x,y\nA,0,0,0\n", "no column h11"),
-        ("frame,h11,h11 \n0,1,1\n", "column h11 is there twice"),
+        ("frame,h11,h11 \n0,1,1\n", "column h11 occurs twice"),
         ("a,b\n1,2,3\n1,2,3,4\n", "not a table of cameras|no column"),
         ("\x00\x01\x02", "not a table of cameras|no column"),
         (

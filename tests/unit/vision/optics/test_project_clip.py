@@ -138,7 +138,7 @@ def test_the_calibration_of_a_project_is_a_camera(tmp_path: Path) -> None:
     system = read_project(tmp_path / "shot.trk").axes
     cameras, notes = project_cameras(clip, clip.source.project)
     assert [camera.frame for camera in cameras] == list(range(FRAMES))
-    assert "neither perspective nor the height" in notes[0]
+    assert "perspective, the height of the caps" in notes[0]
     pixels = np.array([[10.0, 20.0], [200.0, 100.0]])
     for camera in cameras:
         world = system.world([camera.frame] * 2, pixels + 0.5)

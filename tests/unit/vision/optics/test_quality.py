@@ -65,12 +65,18 @@ def test_a_good_clip_has_no_warnings() -> None:
             0.1,
             True,
             False,
-            "in 1 of 3 frames (1 to 1) the model explains little",
+            "in 1 of 3 frames (1 to 1) the camera model explains little",
         ),
         ([0.9, 0.0, 0.0], 0.1, True, False, "2 of 3 frames do not show the rings"),
-        ([0.9] * 3, 1.4, True, False, "height cannot be told from this view (8.0 ± 1.4 m assumed)"),
-        ([0.9] * 3, 0.1, False, False, "neither centre line nor tee line is seen"),
-        ([0.9] * 3, 0.1, True, True, "cropped off its middle or stretched"),
+        (
+            [0.9] * 3,
+            1.4,
+            True,
+            False,
+            "height is not identifiable from this view (8.0 ± 1.4 m assumed)",
+        ),
+        ([0.9] * 3, 0.1, False, False, "neither centre line nor tee line is visible"),
+        ([0.9] * 3, 0.1, True, True, "cropped off-centre or stretched"),
     ],
 )
 def test_what_is_doubtful_is_told(

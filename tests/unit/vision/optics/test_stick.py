@@ -34,7 +34,7 @@ def test_a_stick_beside_the_picture_is_refused(tmp_path: Path, beside: tuple[flo
     cv2.imwrite(str(tmp_path / "0.png"), np.full((48, 64, 3), 90, np.uint8))
     clip = open_video([tmp_path / "0.png"], VideoConfig(fps=10.0))
     for stick in ((30.0, 30.0, *beside, 0.5), (*beside, 30.0, 30.0, 0.5)):
-        with pytest.raises(InputError, match=r"stick .*not in a picture of 64 × 48 px"):
+        with pytest.raises(InputError, match=r"stick .*outside a frame of 64 × 48 px"):
             stick_cameras(clip, stick)
     assert len(stick_cameras(clip, (0.0, 0.0, 64.0, 48.0, 0.5))) == 1
 
