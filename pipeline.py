@@ -58,7 +58,7 @@ def run(
     >>> shot = curlshot.Shot((curlshot.StoneStart("A", 0.5, 1.0),))
     >>> curlshot.simulate(shot).sample([0.0, 0.1, 0.2]).to_csv("still.csv")
     >>> print(curlshot.run("still.csv").restitution)
-    — (no stone moves: neither restitution nor friction)
+    — (no stone moves: restitution and friction are not identifiable)
     """
     config, files = config.replace(**settings), find_inputs(named(inputs) or sample_clip())
     if out is not None:

@@ -44,8 +44,10 @@ class Estimate:
         return plus_minus(self.value, self.stderr)
 
     def __format__(self, spec: str) -> str:
-        if self.value is None or not spec.endswith(tuple(_NUMBER_TYPES)):
+        if not spec.endswith(tuple(_NUMBER_TYPES)):
             return format(str(self), spec)
+        if self.value is None:
+            return str(self)
         numbers = [self.value] if self.stderr is None else [self.value, self.stderr]
         return " ± ".join(format(number, spec).replace("-", MINUS, 1) for number in numbers)
 

@@ -1,8 +1,7 @@
 """Figures and tables of a run, as in a notebook.
 
-Run it as ``python examples/figures.py RUN [OUT]``. RUN is the folder that
-`curlshot run` wrote. Each function gives a matplotlib Figure: after ``%matplotlib inline`` it shows
-itself as the last line of a notebook's cell.
+Run it as ``python examples/figures.py RUN [OUT]``. RUN is the folder that `curlshot run` wrote.
+Each figure is drawn on new axes, which a notebook shows, or on those that are given.
 """
 
 from __future__ import annotations
@@ -10,30 +9,24 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import pandas as pd
+import matplotlib.pyplot as plt
 
-from curlshot.data.results_file import read_results
-from curlshot.data.sheet import HOUSE
-from curlshot.data.tracks import read_tracks
-from curlshot.report.figures import comparison_figure, hit_figure, motion_figure, plan_figure
-from curlshot.report.tables import measured_table
+import curlshot
 
 if not sys.argv[1:]:
     print("usage: python examples/figures.py RUN [OUT]", file=sys.stderr)
     sys.exit(2)
-run = Path(sys.argv[1])
-out = Path(sys.argv[2]) if sys.argv[2:] else run
+run = curlshot.load(sys.argv[1])
+out = Path(sys.argv[2]) if sys.argv[2:] else Path(sys.argv[1])
 
-results = read_results(run / "results.json")
-tracks = read_tracks(run / "tracks.csv")
-simulations = dict(list(pd.read_csv(run / "simulation.csv").groupby("model")))
-hits = results.collisions
+run.plot().figure.savefig(out / "my_plan.pdf")
+run.plot_motion("A")[0].figure.savefig(out / "my_motion.pdf")
+run.plot_comparison("B", model="frictional")[0].figure.savefig(out / "my_comparison.pdf")
+run.plot_hit(1)[0].figure.savefig(out / "my_hit.png", dpi=300)
 
-plan_figure(tracks, simulations, hits, house=HOUSE).savefig(out / "my_plan.pdf")
-motion_figure(tracks, "A", hits, results.glides).savefig(out / "my_motion.pdf")
-comparison_figure(tracks, {"frictional": simulations["frictional"]}, "B", hits).savefig(
-    out / "my_comparison.pdf"
-)
-hit_figure(hits[0]).savefig(out / "my_hit.png", dpi=300)
+figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4), layout="constrained")
+run.plot_speed(ax=left)
+run.plot_friction(ax=right)
+figure.savefig(out / "my_pair.pdf")
 
-print(measured_table(hits).to_string(float_format=lambda value: f"{value:.4f}"))
+print(run.hits.T.to_string())

@@ -8,19 +8,17 @@ from __future__ import annotations
 
 import sys
 
-from curlshot import pipeline
-from curlshot.config import Config
+import curlshot
 
 clips = sys.argv[1:]
-config = Config() if clips else Config().replace(frames=(0, 49))
+config = curlshot.Config() if clips else curlshot.Config().replace(frames=(0, 49))
 
-done = pipeline.run(clips, config=config)  # with out="folder" it writes its files, too
+run = curlshot.run(clips, config=config)  # with out="folder" it writes its files, too
 
-results = done.results
-print(f"e = {results.restitution.value} ± {results.restitution.stderr}")
-print(f"μ = {results.friction.value} ± {results.friction.stderr}")
-for hit in results.collisions:
-    print(f"{hit.stones[0]} hit {hit.stones[1]} at {hit.t:.3f} s, n = {hit.normal}")
-for warning in results.warnings:
+print("e =", run.restitution)
+print("μ =", run.friction)
+for hit in run.hits.to_dict("records"):
+    print(f"{hit['first']} hit {hit['second']} at {hit['t']:.3f} s")
+for warning in run.warnings:
     print("be careful:", warning)
-print(done.tracks.groupby("stone")[["x", "y", "sd_x", "sd_y"]].last())
+print(run.stones[["stone", "x", "y", "sd_x", "sd_y", "top_speed"]])

@@ -13,29 +13,27 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from curlshot import pipeline
+import curlshot
 from curlshot.data.sheet import STONE
 from curlshot.data.tracks import check_detections
 from curlshot.physics.estimate import estimate
-from curlshot.physics.impact.frictional import Frictional
 from curlshot.physics.local_fit.hit_detection import detect_hits
 from curlshot.physics.shot_fit.global_fit import fit_shots
-from curlshot.physics.simulator.simulate import simulate
-from curlshot.physics.simulator.simulation import Shot, StoneStart
+from curlshot.pipeline import measure
 
 RADIUS = STONE.radius  # of the discs, m
 
 
-def made_up(speed: float, aside: float) -> pd.DataFrame:
-    """Give a hit as a camera sees it that is 3 mm off in every frame."""
-    stones = (StoneStart("A", 0.0, 2.0, 0.0, -speed), StoneStart("B", aside, 0.0))
-    shot = Shot(stones, impact=Frictional(0.83))
-    seen = simulate(shot).sample(np.arange(0.0, 3.0, 1 / 30))
+def made_up(speed: float, offset: float) -> pd.DataFrame:
+    """Return a hit as a camera measures it with errors of 3 mm."""
+    stones = curlshot.StoneStart("A", 0.0, 2.0, vy=-speed), curlshot.StoneStart("B", offset, 0.0)
+    shot = curlshot.Shot(stones, curlshot.Frictional(0.83))
+    seen = curlshot.simulate(shot).sample(np.arange(0.0, 3.0, 1 / 30))
     seen[["x", "y"]] += np.random.default_rng(1).normal(0.0, 0.003, (len(seen), 2))
     return check_detections(seen[["stone", "t", "x", "y"]])
 
 
-runs = [pipeline.measure(Path(run) / "tracks.csv").detections for run in sys.argv[1:]]
+runs = [measure(Path(run) / "tracks.csv").detections for run in sys.argv[1:]]
 fits = []
 for detections in runs or [made_up(1.5, 0.05), made_up(2.0, -0.08)]:
     found = estimate(detections, detect_hits(detections, RADIUS), radius=RADIUS)

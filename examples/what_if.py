@@ -6,32 +6,23 @@ Run it as ``python examples/what_if.py RUN``. RUN is the folder that `curlshot r
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
-from curlshot.data.results_file import read_results
-from curlshot.data.tracks import read_tracks
-from curlshot.physics.prediction.ensemble import read_ensemble
-from curlshot.physics.prediction.start import measured_start
-from curlshot.physics.prediction.what_if import Amount, Changes, changed, odds, sample
+import curlshot
 
 if not sys.argv[1:]:
     print("usage: python examples/what_if.py RUN", file=sys.stderr)
     sys.exit(2)
-run = Path(sys.argv[1])
-start = measured_start(
-    read_tracks(run / "tracks.csv"),
-    read_results(run / "results.json"),
-    read_ensemble(run / "ensemble.json"),
-)
+run = curlshot.load(sys.argv[1])
 
 for words, changes in (
-    ("as thrown", Changes()),
-    ("5 cm to the left", Changes(aim_offset=0.05)),
-    ("a tenth faster", Changes(speed=Amount(1.1, relative=True))),
+    ("as thrown", {}),
+    ("5 cm to the left", {"aim_offset": 0.05}),
+    ("a tenth faster", {"speed": "1.1x"}),
 ):
-    start_now = changed(start, changes)
-    outcomes = sample(start_now, 200)  # each a little off, as players throw and stones are known
+    # Each throw is a little off, as players throw and stones are known.
+    _, odds = curlshot.simulate(run, **changes).throw(200)
     print(words)
-    for name, stone in odds(outcomes, start_now).items():
-        if stone.moved > 0.5:
-            print(f"  {name}: in the house {stone.in_house:.0%}, shot stone {stone.shot_stone:.0%}")
+    for name, stone in odds["stones"].items():
+        if stone["moved"] > 0.5:
+            inside, shot = stone["in_house"], stone["shot_stone"]
+            print(f"  {name}: in the house {inside:.0%}, shot stone {shot:.0%}")

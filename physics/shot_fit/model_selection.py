@@ -321,7 +321,7 @@ def _name(fit: ShotFit, best: ShotFit) -> str:
     curl = "none" if "turn" in fit.fixed else "fcv1"
     hits = "stones stick" if "stone_friction" in fit.fixed else "stones slide"
     other = fit.shots[0].unknowns != best.shots[0].unknowns
-    return f"ice {ice}, curl {curl}, {hits}" + ", opposite spins" * other
+    return f"ice {ice}, curl {curl}, {hits}" + ", spins of the other sense" * other
 
 
 def _values(fit: ShotFit, held: Mapping[str, float] = MappingProxyType({})) -> dict[str, float]:

@@ -8,12 +8,15 @@ import shlex
 import sys
 from pathlib import Path
 
+import matplotlib
 import pytest
 
 from curlshot.cli.parser import command_line
 from curlshot.outcome import Run
 
 ROOT = Path(__file__).resolve().parents[2]
+QUICKSTART = ROOT / "examples" / "quickstart.ipynb"
+MOST_OF_A_NOTEBOOK = 20_000
 DOCS = sorted((ROOT / "docs").glob("*.md"))
 OF_A_RUN = ("coach", "figures", "from_tracks", "shared", "what_if")
 
@@ -57,7 +60,7 @@ def test_from_tracks(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_shared(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
     assert sample.out is not None
-    number = r"e = Estimate\(value=(\S+), stderr=(\S+)\)"
+    number = r"e = (\S+) ± (\S+)"
     for words, true, shots in (((), 0.83, 2), ((sample.out,), 0.8345, 1)):
         found = re.findall(number, said("shared", capsys, *words))
         *alone, (e, sd) = [(float(value), float(stderr)) for value, stderr in found]
@@ -76,10 +79,23 @@ def test_coach(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
     text = said("coach", capsys, sample.out)
     assert "ft/s" in text
     assert " m/s" not in text
-    assert "first seen 12.8 ft past it" in text
+    assert "first detected 12.8 ft past it" in text
     assert "shot stone: B" in text
     assert "B: 2.2 ft from the tee" in text
     assert "nan" not in text
+
+
+def test_the_notebook_runs_from_top_to_bottom(tmp_path: Path) -> None:
+    nbclient = pytest.importorskip("nbclient")
+    notebook = pytest.importorskip("nbformat").read(QUICKSTART, as_version=4)
+    assert QUICKSTART.stat().st_size < MOST_OF_A_NOTEBOOK
+    assert not any(cell.get("outputs") for cell in notebook.cells)
+    nbclient.NotebookClient(
+        notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}
+    ).execute()
+    shown = [output for cell in notebook.cells for output in cell.get("outputs", ())]
+    assert any("<svg" in output.get("data", {}).get("text/html", "") for output in shown)
+    assert sum("image/png" in output.get("data", {}) for output in shown) >= 3
 
 
 def test_what_if(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
@@ -92,9 +108,10 @@ def test_what_if(sample: Run, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_figures(sample: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert sample.out is not None
+    matplotlib.use("agg")
     text = said("figures", capsys, sample.out, tmp_path)
-    assert "sd_vx" in text
-    names = {"my_plan.pdf", "my_motion.pdf", "my_comparison.pdf", "my_hit.png"}
+    assert "closing_speed" in text
+    names = {"my_plan.pdf", "my_motion.pdf", "my_comparison.pdf", "my_hit.png", "my_pair.pdf"}
     assert {path.name for path in tmp_path.iterdir()} == names
 
 

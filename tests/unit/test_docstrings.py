@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import doctest
+import time
 from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
 
+import matplotlib as mpl
 import pytest
 
 import curlshot
+
+LONGEST = 2.0
+"""Processor time of the example of one name, s."""
 
 OTHERS = ("curlshot.tests", "curlshot.benchmarks", "curlshot.examples", "curlshot.docs")
 
@@ -27,5 +32,15 @@ def test_all_rooms_are_looked_through() -> None:
 
 
 @pytest.mark.parametrize("name", modules())
-def test_examples_hold(name: str) -> None:
-    assert doctest.testmod(import_module(name)).failed == 0
+def test_examples_hold_and_are_quick(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mpl.use("agg")
+    monkeypatch.chdir(tmp_path)
+    said: list[str] = []
+    runner = doctest.DocTestRunner()
+    for test in doctest.DocTestFinder().find(import_module(name)):
+        began = time.process_time()
+        runner.run(test, out=said.append)
+        assert not said, "".join(said)
+        assert time.process_time() - began < LONGEST, test.name

@@ -60,7 +60,7 @@ class DiskCache:
             _Packer(data, self).dump(thing)
         begin, size = self._file.seek(0, SEEK_END), data.tell()
         if self._file.write(data.getbuffer()) < size:
-            raise OSError(ENOSPC, "no room to put something aside")
+            raise OSError(ENOSPC, "no disk space for the cache")
         return begin, size
 
     def read(self, place: Place) -> Any:

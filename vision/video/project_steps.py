@@ -70,7 +70,7 @@ class ProjectSteps(Source):
             raise
         weakref.finalize(steps, shutil.rmtree, folder, ignore_errors=True)
         if config.fps is not None:
-            steps.warn(f"{path}: a project says how long frames last; `fps` is ignored")
+            steps.warn(f"{path}: the project gives the duration of a frame; `fps` is ignored")
         return steps
 
     @property
@@ -123,7 +123,7 @@ def _open(
     )
     if steps.expected == 0:
         raise InputError(
-            f"{path}: no frame to use: its steps are the frames {timing.start} to {end}"
+            f"{path}: no frame to use: the project selects frames {timing.start} to {end}"
         )
     if project.filters:
         steps.warn(

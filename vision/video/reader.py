@@ -125,8 +125,8 @@ class Video:
             if not hidden and hides(frame.picture, self.bars):
                 hidden = True
                 self.source.warn(
-                    f"{self.files[0]}: black bars are cut off, but frame {frame.index} shows"
-                    " something there; give the frames of the shot alone (`frames`)"
+                    f"{self.files[0]}: black bars are cut off, but frame {frame.index} has"
+                    " content there; select the frames of the shot (`frames`)"
                 )
             yield replace(frame, picture=without_bars(frame.picture, self.bars))
 

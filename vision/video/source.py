@@ -99,7 +99,7 @@ class VideoFile(Source):
         InputError
             It cannot be read.
         """
-        broken = InputError(f"{path}: not a video that can be read (damaged, or not one at all)")
+        broken = InputError(f"{path}: not a readable video (damaged, or another kind of file)")
         try:
             container, pictures = _opened(path)
         except (av.error.FFmpegError, OSError):
@@ -159,7 +159,7 @@ class VideoFile(Source):
                     self.warn(f"{self.files[0]}: frame {index} has no time of its own; left out")
                     continue
                 if picture.shape[1::-1] != self.size:
-                    self.warn(f"{self.files[0]}: frame {index} is of another size; left out")
+                    self.warn(f"{self.files[0]}: frame {index} has another size; left out")
                     continue
                 before = t
                 yield Frame(index, t, picture)
@@ -197,14 +197,15 @@ class ImageFiles(Source):
         source = cls(tuple(paths), size, rate, len(paths), first, last)
         if fps is None and len(paths) > 1:
             source.warn(
-                f"pictures carry no times: {DEFAULT_IMAGE_FPS:g} a second assumed; say `fps`"
+                f"pictures carry no times: {DEFAULT_IMAGE_FPS:g} a second assumed; give `fps` to"
+                " change it"
             )
         times = picture_times(paths)
         longest = max((b - a for a, b in pairwise(times)), default=1.0) if times else 1.0
         if longest > 1.0:
             source.warn(
-                f"{paths[0].parent}: pictures are missing, by the numbers in their names; up to"
-                f" {longest:g} steps of time are left between two that are there"
+                f"{paths[0].parent}: pictures are missing, by the numbers in their names; gaps"
+                f" are up to {longest:g} time steps"
             )
         return source
 
@@ -223,7 +224,7 @@ class ImageFiles(Source):
             if image is None:
                 self.warn(f"{path}: not a readable picture; left out")
             elif image.shape[1::-1] != self.size:
-                self.warn(f"{path}: not of the size of the first picture; left out")
+                self.warn(f"{path}: differs in size from the first picture; left out")
             else:
                 yield Frame(index, times[index] / rate, image)
 
@@ -252,7 +253,7 @@ def open_source(paths: Sequence[Path], config: VideoConfig = VideoConfig()) -> S
     if paths[0].suffix.lower() in IMAGE_SUFFIXES:
         source = ImageFiles.open(paths, config.fps, first, last)
     elif len(paths) > 1:
-        raise InputError(f"{paths[1]}: one video at a time, please")
+        raise InputError(f"{paths[1]}: one video at a time")
     else:
         source = VideoFile.open(paths[0], first, last)
         if config.fps is not None:

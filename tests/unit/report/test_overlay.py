@@ -100,10 +100,10 @@ def test_no_rings_where_there_is_no_house(tmp_path, shot):
 
 def test_nothing_is_left_of_a_failure(tmp_path, shot):
     class Broken:
-        whole_size, fps, expected = SIZE, 25.0, 5
+        size, whole_size, fps, expected = SIZE, SIZE, 25.0, 5
 
         def uncut(self):
-            yield from open_video(pictures(tmp_path, 2))
+            yield from open_video(pictures(tmp_path, 2)).uncut()
             raise OSError("the disk went away")
 
     folder = tmp_path / "out"

@@ -51,8 +51,8 @@ def test_stones_meet_where_the_tracks_have_them_meet() -> None:
     seen[["x", "y"]] *= 0.97
     hits = detect_hits(seen, RADIUS)
     found = estimate(seen, hits, radius=RADIUS)
-    assert found.laws is not None
-    size = found.laws.values[found.laws.names.index("size")]
+    assert found.joint_estimate is not None
+    size = found.joint_estimate.values[found.joint_estimate.names.index("size")]
     assert size == pytest.approx(0.97, abs=0.006)
 
     def farthest(of: Estimates) -> float:

@@ -267,7 +267,7 @@ def test_a_spin_that_nobody_saw_may_be_of_either_sense(seed: int) -> None:
     assert found.shot_fit is not None
     assert float(found.curl.value or 0) == pytest.approx(0.0082, abs=0.002)
     assert float(found.shot_fit["A.omega"].value or 0) < 0
-    others = ["opposite spins" in law.name for law in found.shot_fit.laws]
+    others = ["other sense" in law.name for law in found.shot_fit.laws]
     assert any(others) and not others[0]
     for got, true in ((found.restitution, 0.65), (found.friction, 0.00824)):
         assert abs(float(got.value or 0) - true) < 2.5 * float(got.stderr or 0)

@@ -136,7 +136,7 @@ def test_a_clip_without_its_index_is_refused(
     raw = write_clip(tmp_path / "whole.mp4", uneven()).read_bytes()
     path = tmp_path / "cut.mp4"
     path.write_bytes(raw[: len(raw) // 2])
-    with pytest.raises(InputError, match=r"cut\.mp4: not a video"):
+    with pytest.raises(InputError, match=r"cut\.mp4: not a readable video"):
         open_video([path])
     assert capfd.readouterr() == ("", "")
 
@@ -152,7 +152,7 @@ def test_what_is_no_clip_is_refused_in_one_line(
     noise.write_bytes(np.random.default_rng(3).bytes(999))
     (tmp_path / "folder").mkdir()
     for path, reason in (
-        (text, "not a video"),
+        (text, "not a readable video"),
         (empty, "the file is empty"),
         (noise, "not a readable picture"),
         (tmp_path / "none.mp4", "no such file"),
@@ -180,7 +180,7 @@ def test_a_video_that_is_refused_is_closed(tmp_path: Path, monkeypatch: pytest.M
         return opened[-1]
 
     monkeypatch.setattr(av, "open", watched)
-    for which, frames, reason in ((hollow, None, "not a video"), (path, (5, None), "only 3")):
+    for which, frames, reason in ((hollow, None, "not a readable video"), (path, (5, None), "only 3")):
         with pytest.raises(InputError, match=reason):
             open_video([which], VideoConfig(frames=frames))
         with pytest.raises(AssertionError, match="not open"):
@@ -221,7 +221,7 @@ def test_pictures_that_are_missing_leave_their_time(tmp_path: Path) -> None:
     assert [frame.t for frame in clip] == pytest.approx([0, 0.1, 0.2, 0.5, 0.6, 0.7])
     (warning,) = clip.warnings
     assert "missing" in warning
-    assert "up to 3 steps" in warning
+    assert "up to 3 time steps" in warning
     assert not open_video(paths, VideoConfig(fps=10)).warnings
 
 
@@ -243,7 +243,7 @@ def test_bad_pictures_are_left_out_with_a_warning(tmp_path: Path) -> None:
     assert [frame.t for frame in clip] == pytest.approx([0.04, 0.12, 0.2])
     assert "25 a second assumed" in clip.warnings[0]
     assert "not a readable picture" in clip.warnings[1]
-    assert "not of the size" in clip.warnings[3]
+    assert "differs in size" in clip.warnings[3]
     for path in paths:
         path.write_bytes(b"")
     with pytest.raises(InputError, match="not a readable picture"):
