@@ -111,9 +111,7 @@ def test_three_stones_in_a_row() -> None:
 
 def test_air_table(shared: Path) -> None:
     seen = airtable(shared)
-    found = estimate(
-        seen, detect_hits(seen, 0.035), radius=0.035, masses={"1": 31.64, "2": 29.80}
-    )
+    found = estimate(seen, detect_hits(seen, 0.035), radius=0.035, masses={"1": 31.64, "2": 29.80})
     (hit,) = found.collisions
     assert hit.restitution == pytest.approx(0.91, abs=0.03)
     assert hit.stderr is not None

@@ -52,7 +52,9 @@ def test_a_row_that_may_lie_on_the_other_side_of_a_hit_says_so() -> None:
     frame = seen["t"].unique()[np.searchsorted(seen["t"].unique(), motion.hits[0].t)]
     sure, unsure = (
         smooth(
-            seen, [HitCandidate(frame - 0.001, error, ("A", "B"), motion.hits[0].normal)], radius=RADIUS
+            seen,
+            [HitCandidate(frame - 0.001, error, ("A", "B"), motion.hits[0].normal)],
+            radius=RADIUS,
         )
         for error in (1e-5, 1e-3)
     )

@@ -180,7 +180,10 @@ def test_a_video_that_is_refused_is_closed(tmp_path: Path, monkeypatch: pytest.M
         return opened[-1]
 
     monkeypatch.setattr(av, "open", watched)
-    for which, frames, reason in ((hollow, None, "not a readable video"), (path, (5, None), "only 3")):
+    for which, frames, reason in (
+        (hollow, None, "not a readable video"),
+        (path, (5, None), "only 3"),
+    ):
         with pytest.raises(InputError, match=reason):
             open_video([which], VideoConfig(frames=frames))
         with pytest.raises(AssertionError, match="not open"):
