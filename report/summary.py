@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,8 +19,6 @@ from curlshot.physics.statistics.season import POSSIBLE, SCATTER
 from curlshot.report.numbers import assumed, count, plus_minus, warned
 from curlshot.report.tables import moving_stones, rest_table, shot_stone
 
-ABREAST = 3
-"""Stones on a line, which then has some hundred letters."""
 FEW_HITS = 4
 """Hits that a prompt of Python lists."""
 WIDEST = 100
@@ -285,11 +284,12 @@ def _each(
         for stone, error in errors.items()
         if error is not None and (sd := stated.get(stone)) is not None
     ]
-    width = max(15, len(when))
-    rows = [", ".join(texts[k : k + ABREAST]) for k in range(0, len(texts), ABREAST)]
+    head = f"{'':12s}{when:15s} "
+    rows = textwrap.wrap(
+        ", ".join(text.replace(" ", "\xa0") for text in texts), WIDEST - len(head)
+    )  # a stone and its numbers stay together
     return [
-        f"{'':12s}{'' if k else when:{width}s} {row}{',' if k < len(rows) - 1 else ''}"
-        for k, row in enumerate(rows)
+        f"{'' if k else head:{len(head)}s}{row}".replace("\xa0", " ") for k, row in enumerate(rows)
     ]
 
 

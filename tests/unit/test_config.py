@@ -129,5 +129,5 @@ def test_an_unknown_setting_in_python_names_the_nearest() -> None:
 
 
 def test_options_that_messages_name_are_settings_or_arguments_of_a_command() -> None:
-    arguments = {"config", "over"}
+    arguments = {"aim_offset", "config", "out", "over", "speed", "spin", "throw_sd"}
     assert arguments | {item.name for _, item in Config.settings()} >= OPTIONS

@@ -7,11 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from curlshot.data.errors import InputError
 from curlshot.data.results import (
     Estimate,
+    Glide,
+    JointEstimate,
+    Law,
     SimulationScore,
+    TrackResidual,
 )
 from curlshot.data.results_file import SCHEMA, read_results, results_json, write_results
 from curlshot.tests.helpers.data.results_file import RESULTS, strict
@@ -22,14 +28,68 @@ def test_round_trip(tmp_path: Path) -> None:
     assert read_results(tmp_path / "results.json") == RESULTS
 
 
+VERSION_1 = """{
+ "schema": 1,
+ "input": {"files": ["shot.mp4"], "fps": 25.0, "frames": 150, "duration": 5.96},
+ "restitution": {"value": 0.83, "stderr": 0.02},
+ "friction": {"value": 0.011, "stderr": 0.0003, "law": "constant", "a": null, "v_c": null,
+  "b": null},
+ "collisions": [],
+ "glides": [{"stone": "A", "t0": 1.2, "t1": 5.5, "friction": 0.011, "stderr": 0.0004,
+  "turn": 0.002, "stderr_turn": 0.001, "speed": 1.2}],
+ "simulations": {},
+ "warnings": ["two frames are missing"],
+ "radius": 0.145,
+ "predictions": {"frictional": {"rmse": 0.03, "rest_error": {"A": 0.05}, "rest_sd": {"A": 0.2},
+  "restitution": {"value": 0.85, "stderr": 0.05}, "friction": {"value": 0.01, "stderr": 0.001},
+  "note": null, "error_after": {"A": 0.04}, "sd_after": {"A": 0.06}}},
+ "laws": {"names": ["friction"], "values": [0.011], "cov": [[1e-8]]},
+ "methods": {"global": {"restitution": {"value": 0.83, "stderr": 0.02},
+  "friction": {"value": 0.011, "stderr": 0.0003},
+  "stone_friction": {"value": null, "stderr": null, "note": null}, "hits": [], "note": null}},
+ "law_choice": [{"name": "ice constant", "criterion": 0.0, "weight": 1.0,
+  "friction": {"value": 0.011, "stderr": 0.0003}}],
+ "curl": {"value": 0.008, "stderr": 0.001, "note": null},
+ "stones": {"A": {"friction": {"value": 0.011, "stderr": 0.0004},
+  "turn": {"value": 0.002, "stderr": 0.001}, "speed": 1.2,
+  "spin": {"value": 0.6, "stderr": 0.1}}},
+ "misfits": [{"stone": "A", "t0": 1.2, "t1": 5.5, "size": 6.1, "certain": true,
+  "left_out": false}],
+ "posterior": null,
+ "masses": {},
+ "teams": {"A": "#d8c020"},
+ "sheet": false
+}"""
+
+
+def test_a_file_of_version_1_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "results.json"
+    path.write_text(VERSION_1, encoding="utf-8")
+    old = read_results(path)
+    assert old.joint_estimate == JointEstimate(("friction",), (0.011,), ((1e-8,),))
+    assert old.model_selection == (Law("ice constant", 0.0, 1.0, Estimate(0.011, 3e-4)),)
+    assert old.residuals == (TrackResidual("A", 1.2, 5.5, 6.1, True, False),)
+    assert not old.origin_at_tee
+    assert old.methods["shot_fit"].restitution == Estimate(0.83, 0.02)
+    assert (old.glides[0].turn_rate, old.glides[0].stderr_turn_rate) == (0.002, 0.001)
+    assert old.stones["A"].turn_rate == Estimate(0.002, 0.001)
+    guess = old.predictions["frictional"]
+    assert guess.error_at_comparison == {"A": 0.04}
+    assert guess.sd_at_comparison == {"A": 0.06}
+    write_results(old, path)
+    assert strict(path.read_text(encoding="utf-8"))["schema"] == 2
+    assert read_results(path) == old
+
+
 def test_the_form_of_the_file() -> None:
     raw = strict(results_json(RESULTS))
-    assert raw["schema"] == SCHEMA == 1
+    assert raw["schema"] == SCHEMA == 2
     assert set(raw) == {
         *("schema", "input", "restitution", "friction", "collisions", "glides"),
-        *("simulations", "warnings", "radius", "predictions", "laws", "methods", "model_selection"),
-        *("curl", "stones", "misfits", "posterior", "masses", "teams"),
-        "sheet",
+        *("simulations", "warnings", "radius", "predictions", "joint_estimate", "methods"),
+        "model_selection",
+        *("curl", "stones", "residuals", "posterior", "masses", "teams"),
+        "origin_at_tee",
     }
     assert raw["input"] == {
         "files": ["clip Ä.mp4"],
@@ -60,6 +120,23 @@ def test_what_is_not_finite_is_null(tmp_path: Path) -> None:
     assert back.simulations["frictional"].rest_error == {"A": None}
 
 
+numbers = st.one_of(st.none(), st.floats())
+
+
+@given(value=numbers, stderr=numbers, text=st.text())
+def test_any_value_is_strict_json(value: float | None, stderr: float | None, text: str) -> None:
+    results = replace(
+        RESULTS,
+        restitution=Estimate(value, stderr),
+        warnings=(text,),
+        glides=(Glide(text, 0.0, 1.0, value, stderr),),
+    )
+    raw = strict(results_json(results))
+    known = value is not None and math.isfinite(value)
+    assert raw["restitution"]["value"] == (value if known else None)  # type: ignore[index]
+    assert raw["warnings"] == [text]
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
@@ -69,7 +146,7 @@ def test_what_is_not_finite_is_null(tmp_path: Path) -> None:
         ("3", "not a results.json"),
         ("null", "not a results.json"),
         ("{}", "not a results.json"),
-        ('{"schema": 2}', "another version"),
+        ('{"schema": 3}', "another version"),
         ('{"schema": 1}', "not a results.json"),
     ],
 )
@@ -83,6 +160,26 @@ def test_other_files_are_refused(tmp_path: Path, text: str, reason: str) -> None
         read_results(path)
     with pytest.raises(InputError, match="No such file"):
         read_results(tmp_path / "none.json")
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    key=st.sampled_from(sorted(json.loads(results_json(RESULTS)))),
+    value=st.recursive(
+        st.one_of(st.none(), st.integers(), st.text(max_size=5), st.booleans()),
+        lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner),
+        max_leaves=4,
+    ),
+)
+def test_damaged_results_are_read_or_refused(tmp_path: Path, key: str, value: object) -> None:
+    raw = json.loads(results_json(RESULTS))
+    raw[key] = value
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(raw))
+    try:
+        read_results(path)
+    except InputError as refusal:
+        assert str(path) in str(refusal)
 
 
 @pytest.mark.parametrize(

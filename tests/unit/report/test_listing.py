@@ -32,13 +32,13 @@ def test_predictions_stand_beside_what_was_fitted(shot):
     assert list(made["predictions"].frame["A"]) == [0.031]
     (row,) = made["predictions"].frame.to_dict("records")
     assert made["predictions"].columns[2].parts(row) == ("31", "50")
-    assert "is known of μ beforehand, with e assumed." in made["predictions"].note
+    assert "prior knowledge of μ, with e assumed." in made["predictions"].note
     assert "shot fit" in made["models"].note
     assert "start of the shot fit" in made["table_4_point-mass"].note
     other = page_tables(replace(results, joint_estimate=None, predictions={}), shot.tracks)
     alone = {table.name: table for table in other}
     assert "predictions" not in alone
-    assert "from before" in alone["models"].note
+    assert "from the state before" in alone["models"].note
     assert "before the first hit" in alone["table_4_point-mass"].note
 
 

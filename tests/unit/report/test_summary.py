@@ -27,7 +27,7 @@ def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
     text = summary(replace(shot.results, simulations={"frictional": score}), shot.tracks)
     how = "frictional, as fitted" if shot.results.joint_estimate is not None else "frictional"
     lines = text.splitlines()
-    said = lines.index(f"simulated   {how}: 2.0 cm RMS off")
+    said = lines.index(f"simulated   {how}: 2.0 cm RMS error")
     off = "at the end      A 3.1 cm (± 5.0 cm), B 1.2 mm (± 2.0 mm), D 20.0 cm (± 10.0 cm)"
     assert lines[said + 1] == f"            {off}"
     apart = summary(replace(shot.results, joint_estimate=None), shot.tracks)

@@ -25,7 +25,7 @@ def test_discs_are_more_than_a_dot_and_less_than_the_picture(scale: float, fine:
     if fine:
         check_size(STONE.radius, camera(scale))
     else:
-        with pytest.raises(InputError, match="check `radius`"):
+        with pytest.raises(InputError, match="verify `radius`"):
             check_size(STONE.radius, camera(scale))
 
 
@@ -67,7 +67,7 @@ def test_frames_of_which_none_can_be_read_are_refused(tmp_path: Path) -> None:
     cv2.imwrite(str(files[0]), np.full((120, 160, 3), 90, np.uint8))
     files[1].write_bytes(b"no picture")
     settings = Config().replace(stick=(20.0, 20.0, 120.0, 20.0, 0.5), frames=(1, 1))
-    with pytest.raises(InputError, match="none of the frames that are used can be read"):
+    with pytest.raises(InputError, match="none of the selected frames can be read"):
         track_camera(open_video(files, settings.video), settings)
 
 

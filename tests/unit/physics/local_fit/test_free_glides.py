@@ -96,7 +96,7 @@ def test_frictions_that_differ_are_a_mean_if_that_tells_something() -> None:
     vague = told(*(by_turns(np.array([a]), 1.5, 1.0) for a in (1.0, -0.15, 0.1, -0.1)))
     assert len(vague.glides) == 4
     assert vague.friction.value is None
-    assert "tells nothing" in str(vague.friction_doubt)
+    assert "is too uncertain" in str(vague.friction_doubt)
 
 
 def test_what_gains_speed_all_the_way_is_followed() -> None:

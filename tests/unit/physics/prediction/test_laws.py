@@ -47,7 +47,9 @@ def test_the_distance_at_which_stones_meet_is_a_law_of_the_shot() -> None:
     assert measured_laws(Estimates(), R).size == Estimate(1.0, 0.0)
 
     class Shot(Estimates):
-        laws = JointEstimate(("restitution", "size"), (0.8, 0.996), ((1e-4, 0.0), (0.0, 4e-6)))
+        joint_estimate = JointEstimate(
+            ("restitution", "size"), (0.8, 0.996), ((1e-4, 0.0), (0.0, 4e-6))
+        )
 
     size = measured_laws(Shot(), R).size
     assert size.value == 0.996
@@ -56,7 +58,9 @@ def test_the_distance_at_which_stones_meet_is_a_law_of_the_shot() -> None:
 
 def test_loss_of_spin_and_inertia_are_as_the_shot_tells_else_as_usual() -> None:
     class Shot(Estimates):
-        laws = JointEstimate(("loss", "inertia"), (0.004, 0.45), ((1e-6, 0.0), (0.0, 1e-4)))
+        joint_estimate = JointEstimate(
+            ("loss", "inertia"), (0.004, 0.45), ((1e-6, 0.0), (0.0, 1e-4))
+        )
 
     untold, told = measured_laws(Estimates(), R), measured_laws(Shot(), R)
     assert untold.curl == FCV1Curl(turn=0.0, loss=0.0125)

@@ -101,12 +101,12 @@ def test_an_unseen_spin_is_named_with_its_error(likely: float, said: str) -> Non
         for spin in (likely, 0.3, 0.7)
     ]
     start = measured_start(blind, results, replace(ensemble, likely=shots[0], others=shots[1:]))
-    assert start.assumed == {"spin of A": f"spin of A not seen: {said} ± 0.2 rad/s assumed"}
+    assert start.assumed == {"spin of A": f"spin of A not measured: {said} ± 0.2 rad/s assumed"}
 
 
 def test_without_a_sheet_no_stone_leaves_it() -> None:
     tracks, results, ensemble = measured()
-    start = measured_start(tracks, replace(results, sheet=False), ensemble)
+    start = measured_start(tracks, replace(results, origin_at_tee=False), ensemble)
     assert (start.shot.bounds, start.house, start.release) == (None, False, 0.0)
 
 

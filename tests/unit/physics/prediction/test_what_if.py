@@ -39,7 +39,7 @@ def test_changes_are_made_to_the_thrown_stone_and_the_laws() -> None:
             written_start(replace(HIT, stones=(HIT.stones[0], StoneStart("B", 0.6, 3.0)))),
             Changes(aim_offset=0.3),
         )
-    with pytest.raises(InputError, match="A would begin off the sheet"):
+    with pytest.raises(InputError, match="A would start outside the sheet"):
         changed(written_start(replace(HIT, bounds=Bounds(-1))), Changes(aim_offset=2.1))
 
 

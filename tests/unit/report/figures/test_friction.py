@@ -26,7 +26,7 @@ def test_a_glide_that_tells_next_to_nothing_leaves_the_axis_as_it_is(shot):
     assert ax.get_ylim() == usual
     (arrow,) = [item for item in ax.lines if item.get_marker() == "^"]
     assert arrow.get_ydata() == pytest.approx([usual[1]])
-    assert any("poorly" in text.get_text() for text in figure.legends[0].get_texts())
+    assert any("uncertain" in text.get_text() for text in figure.legends[0].get_texts())
     sure = Glide("B", 1.52, 3.0, 0.06, 0.002)
     assert figures.friction_figure((*told, sure), law, shot.tracks).axes[0].get_ylim()[1] > 0.06
 
@@ -45,4 +45,4 @@ def test_where_the_shot_tells_little_glides_that_tell_no_less_are_not_pale(shot)
         glides = [Glide("A", 0.0, 6.0, 2e-3, stderr)]
         figure = figures.friction_figure(glides, law, shot.tracks)
         said = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert any("poorly" in text for text in said) == poor
+        assert any("uncertain" in text for text in said) == poor

@@ -60,4 +60,4 @@ def test_what_ends_out_of_view_is_told(house) -> None:
     place = away.rest["A"]
     assert told.startswith("A leaves the sheet at (") and f"{abs(place.y):.1f}" in told
     gone = simulated_figure(sampled(away), house=house)
-    assert any(text.get_text().startswith("A goes on to (") for text in texts(gone))
+    assert any(text.get_text().startswith("A continues to (") for text in texts(gone))

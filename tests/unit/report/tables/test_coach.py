@@ -22,7 +22,7 @@ def test_speeds_at_the_lines_are_those_of_the_closed_form():
 def test_a_line_that_was_not_passed_in_view_has_a_reason():
     table = tables.speed_table(glide("A", (0.3, 4.0), 0.8), ()).set_index("at")
     assert table["speed"].isna().all()
-    assert table.loc["hog line", "note"] == "first seen 2.4 m past it"
+    assert table.loc["hog line", "note"] == "first detected 2.4 m past it"
     way = 0.8**2 / (2 * MU_G)
     assert table.loc["tee line", "note"].startswith(f"came no closer than {4.0 - way:.1f} m")
 

@@ -32,7 +32,7 @@ def test_places_are_told_of_stones_that_have_stopped():
     assert rest.loc["A", "note"] == "still moving at 0.29 m/s at the end of the clip"
     assert rest.loc["B", "to_tee"] == pytest.approx(1.0)
     assert rest.loc["B", "sd_to_tee"] == pytest.approx(0.003)
-    assert tables.shot_stone(rest.reset_index()) == (None, "where A stopped is not known")
+    assert tables.shot_stone(rest.reset_index()) == (None, "the last places of A are unknown")
 
 
 def test_a_stone_that_left_the_house_does_not_matter():
@@ -50,7 +50,7 @@ def test_a_stone_that_moves_away_from_the_tee_does_not_lie_shot():
     assert rest["beyond"].iloc[0] == pytest.approx(1.4, abs=0.05)
     assert tables.shot_stone(rest) == ("B", "A still moved, farther from the tee and away from it")
     far = tables.rest_table(pd.concat([away, glide("B", (0.9, 1.2), end=0.9)]))
-    assert tables.shot_stone(far) == (None, "where A stopped is not known")
+    assert tables.shot_stone(far) == (None, "the last places of A are unknown")
 
 
 def lying(places: dict[str, float], teams: dict[str, str] | None = None) -> pd.DataFrame:

@@ -37,4 +37,4 @@ def test_a_stone_first_seen_at_rest_is_told_of(since: float, begins: Camera, war
     cameras = [replace(WIDE if t > 1.5 else begins, frame=index, t=t) for index, t, _ in frames]
     told = seen_late({"A": tracks["2"], "B": tracks["0"]}, cameras, STONE)
     assert len(told) == warned
-    assert all(text.startswith(f"A is first seen at {since:.1f} s, at rest") for text in told)
+    assert all(text.startswith(f"A is first detected at {since:.1f} s, at rest") for text in told)

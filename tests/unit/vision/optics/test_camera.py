@@ -102,7 +102,7 @@ def test_the_covariance_of_places_is_of_what_is_shared_and_what_is_not() -> None
     np.testing.assert_allclose(known.place_cov(places), expected, rtol=1e-9)
     of_all = known.shared_place_cov(places)
     np.testing.assert_allclose(known.place_sd(places) ** 2, np.trace(of_all.T) / 2, rtol=1e-9)
-    with pytest.raises(ValueError, match="place is not known"):
+    with pytest.raises(ValueError, match="position of the camera is unknown"):
         replace(camera, position=None).place_jacobian(places)
 
 

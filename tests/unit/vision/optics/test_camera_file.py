@@ -88,7 +88,7 @@ def test_frames_without_a_camera_are_left_out(clip: Video, tmp_path: Path) -> No
         ({"h33": 0.0}, "line 3: h33 is 0"),
         ({"k1": -3.0}, "line 3: k1 and k2 fold"),
         ({"cam_z": -8.0}, "line 3: cam_z is not above"),
-        ({"frame": 0}, "line 3: its frame was there before"),
+        ({"frame": 0}, "line 3: a repeated frame"),
         ({"frame": 0.5}, "line 3: frame is not a whole number"),
         ({"frame": -1}, "line 3: frame is not a whole number"),
     ],

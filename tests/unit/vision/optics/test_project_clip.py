@@ -116,13 +116,13 @@ def test_a_clip_in_an_archive_lasts_as_long_as_it_is_used(tmp_path: Path, unpack
 
 def test_what_cannot_be_opened_is_named_by_its_project(tmp_path: Path, unpacked: Path) -> None:
     write_trk(project(("clip.mp4",)), tmp_path / "a.trk")
-    with pytest.raises(InputError, match=r"a\.trk: its clip clip\.mp4 is not there"):
+    with pytest.raises(InputError, match=r"a\.trk: its clip clip\.mp4 is missing"):
         open_video([tmp_path / "a.trk"])
     (tmp_path / "clip.mp4").write_bytes(b"no clip")
-    with pytest.raises(InputError, match=r"a\.trk: clip\.mp4: not a video"):
+    with pytest.raises(InputError, match=r"a\.trk: clip\.mp4: not a readable video"):
         open_video([tmp_path / "a.trk"])
     write_trz(project(("v/clip.mp4",)), tmp_path / "a.trz", {"v/clip.mp4": tmp_path / "clip.mp4"})
-    with pytest.raises(InputError, match=r"a\.trz: \d*-clip\.mp4: not a video"):
+    with pytest.raises(InputError, match=r"a\.trz: \d*-clip\.mp4: not a readable video"):
         open_video([tmp_path / "a.trz"])
     assert list(unpacked.iterdir()) == []
     write_trk(project(()), tmp_path / "b.trk")

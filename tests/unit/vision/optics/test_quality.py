@@ -90,4 +90,4 @@ def test_a_height_that_is_said_is_not_assumed_but_may_be_at_odds_with_the_view()
     said = OVERHEAD.at_height(5.6)
     assert warnings(cameras([0.9] * 3), 5.65, 0.1, said, lined=True, cropped=False) == ()
     (text,) = warnings(cameras([0.9] * 3), 6.1, 0.1, said, lined=True, cropped=False)
-    assert "given, 5.6 m, does not fit this view, which has it higher" in text
+    assert "5.6 m, does not fit this view; the view suggests a higher camera" in text
