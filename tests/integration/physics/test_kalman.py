@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from curlshot.data.measurement import Duplicate
 from curlshot.data.tracks import check_detections
 from curlshot.physics.kalman import smooth
 from curlshot.physics.local_fit.hit_detection import HitCandidate, detect_hits
@@ -58,6 +59,29 @@ def test_slow_stones_are_slowed_more_on_real_ice(speed: float) -> None:
         off[:, 1] /= tracks["sd_vy"]
         pulls.append(off[[0, -1]])
     assert np.all(np.mean(np.square(pulls), axis=0) < 2)
+
+
+def test_duplicates_of_the_last_frame_have_states_too() -> None:
+    motion = hit_motion(1.0, 0.05)
+    seen = watch(motion, np.random.default_rng(8), sd=0.002)
+    hits = detect_hits(seen, RADIUS)
+    without = smooth(seen, hits, radius=RADIUS)
+    last, t = int(seen["frame"].max()), float(seen["t"].max())
+    # The second repeats the first, and the third another frame than the last.
+    held = {last + k: Duplicate(t + 0.04 * k, last + (k > 1)) for k in (1, 2)}
+    other = {last + 3: Duplicate(t + 0.12, last - 1)}
+    tracks = smooth(seen, hits, radius=RADIUS, duplicates=held | other)
+    added = tracks[tracks["frame"] > last]
+    assert added.groupby("stone")["frame"].agg(list).tolist() == [[last + 1, last + 2]] * 2
+    assert (added["seen"] == 0).all()
+    before = tracks[tracks["frame"] <= last].reset_index(drop=True)
+    pd.testing.assert_frame_equal(before, without, rtol=1e-6, atol=1e-9)
+    for _, rows in tracks.groupby("stone"):
+        final, *later = rows[["t", "x", "y", "vx", "vy", "sd_y"]].to_numpy()[-3:]
+        for row in later:
+            moved = (row[0] - final[0]) * final[3:5]
+            np.testing.assert_allclose(row[1:3], final[1:3] + moved, atol=0.001)
+            assert row[5] >= final[5]
 
 
 def test_a_way_too_short_to_be_seen_twice_is_told_by_its_ends() -> None:

@@ -135,6 +135,7 @@ def test_one_bad_clip_does_not_stop_the_others(
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.slow
 def test_two_clips_at_once_come_to_what_one_after_the_other_does(tmp_path: Path) -> None:
     for name in ("one.mp4", "two.mp4"):
         shutil.copy(pipeline.sample_clip(), tmp_path / name)

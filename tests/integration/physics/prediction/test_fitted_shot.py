@@ -40,6 +40,7 @@ def fitted(found: Estimates, *further: StoneStart) -> Ensemble:
     return fitted_ensemble(found.shot_fit, Shot(stones), InitialUncertainty(still, {}), 1.0, 24)
 
 
+@pytest.mark.slow
 def test_two_hits_end_where_they_did_as_far_as_is_stated() -> None:
     """Half a millimetre of aim is centimetres after two hits: the end says where it was."""
     pulls, off = [], []

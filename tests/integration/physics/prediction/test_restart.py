@@ -9,6 +9,7 @@ from curlshot.cli.main import main
 from curlshot.outcome import Run
 
 
+@pytest.mark.slow
 def test_a_run_is_simulated_by_the_name_of_its_folder(
     sample: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

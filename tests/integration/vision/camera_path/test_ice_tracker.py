@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
+import pytest
 
 from curlshot.tests.helpers.vision.filmed import filmed, tracker
 from curlshot.vision.camera_path.edge_tracker import EdgeTracker
@@ -53,8 +54,9 @@ def test_other_pictures_are_not_taken_for_the_same_ice() -> None:
     assert IceTracker().settle([other], [first.view], first, picture, house.rig, edges) == []
 
 
-def test_frames_carried_together_are_placed_as_alone() -> None:
+def test_frames_carried_together_are_placed_as_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     frames, house, edges, first = started()
+    monkeypatch.setattr(EdgeTracker, "expects", lambda *_: False)
     block, picture = frames[1:5], frames[0].picture
     ice, views = IceTracker(), [first.view] * len(block)
     together = ice.settle(block, views, first, picture, house.rig, edges)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
+import pytest
 
 from curlshot.synthetic import (
     PAINTS,
@@ -148,6 +149,7 @@ def test_a_pan_too_fast_to_be_followed_is_no_cut() -> None:
     assert piece.found == len(frames) and not piece.leapt
 
 
+@pytest.mark.slow
 def test_a_lens_that_bends_with_the_zoom_is_learned_on_the_way() -> None:
     scene = replace(sample_scene(), paint=PAINTS["navy-orange"])
     keys = (
