@@ -414,7 +414,7 @@ def test_a_stone_that_is_pushed_on_its_way_to_the_hit() -> None:
     found = estimate(seen, detect_hits(seen, RADIUS), radius=RADIUS)
     assert found.shot_fit is None
     assert found.restitution.value == pytest.approx(0.83, abs=0.02)
-    (why,) = [text for text in found.warnings if "whole shot" in text]
+    (why,) = [text for text in found.warnings if "shot fit" in text]
     assert "something other than ice and hits moves a stone" in why
     assert found.methods["shot_fit"].note == why
     for name in ("local", "finite-differences"):
