@@ -49,8 +49,8 @@ def test_a_table_that_goes_across_a_sheet_has_none(across: bool) -> None:
     ("settings", "said"),
     [
         (Config(), "`house` corrects it"),
-        (Config().replace(stick=(1.0, 1.0, 90.0, 1.0, 0.5)), "check `radius` and `stick`"),
-        (Config().replace(camera=Path("camera.csv")), "check `radius` and `camera`"),
+        (Config().replace(stick=(1.0, 1.0, 90.0, 1.0, 0.5)), "verify `radius` and `stick`"),
+        (Config().replace(camera=Path("camera.csv")), "verify `radius` and `camera`"),
     ],
 )
 def test_what_to_do_where_no_stone_was_found_goes_by_how_the_camera_was_known(

@@ -11,6 +11,7 @@ import pytest
 from curlshot import pipeline
 from curlshot.cli.main import main
 from curlshot.data.tracks import TRACK_COLUMNS
+from curlshot.report.write import WRITTEN
 
 OLD = "old"
 
@@ -19,7 +20,7 @@ OLD = "old"
 def folder(tmp_path: Path) -> Path:
     """An earlier run, and a file of one's own."""
     out = tmp_path / "shot"
-    for name in pipeline.WRITTEN:
+    for name in WRITTEN:
         if "." in name:
             (out / name).parent.mkdir(parents=True, exist_ok=True)
             (out / name).write_text(OLD)
@@ -70,7 +71,7 @@ def test_tracks_stay_alone(folder):
 
 def test_a_failure_leaves_the_earlier_run(folder, tmp_path):
     assert main(["estimate", str(tmp_path / "none.csv"), "-o", str(folder), "-q"]) == 2
-    assert left(folder) == {*pipeline.WRITTEN, "notes.txt"}
+    assert left(folder) == {*WRITTEN, "notes.txt"}
 
 
 def test_a_run_does_not_write_over_its_own_input(folder, capsys):

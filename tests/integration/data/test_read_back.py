@@ -115,7 +115,7 @@ def test_single_places_that_were_edited_or_added_count(tmp_path: Path) -> None:
     table.loc[40, "y"] = np.nan  # struck out
     table.to_csv(path, index=False)
     found = read_table([path])
-    assert [text for text in found.warnings if " 1 of its places" in text and "edited" in text]
+    assert [text for text in found.warnings if ": 1 places differ" in text and "edited" in text]
     for row in (one, other):
         mine = found.detections[
             (found.detections[["stone", "t"]] == table.loc[row, ["stone", "t"]]).all(axis=1)

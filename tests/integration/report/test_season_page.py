@@ -35,7 +35,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_it_says_what_all_shots_say_and_leads_to_each(written: Path) -> None:
     page = Page(written)
     assert page.tags[0] == ("html", {"lang": "en-GB"})
-    assert "mean of 3 shots; from shot to shot it scatters by" in page.said
+    assert "mean of 3 shots; scatter from shot to shot" in page.said
     assert "zz: the same shot as shot 2: counted once" in page.said
     assert "restitution: no hit detected" in page.said
     addresses = [address["href"] or "" for address in page.all("a")]

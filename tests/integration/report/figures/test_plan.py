@@ -43,7 +43,7 @@ def test_a_stone_last_seen_under_way_is_shown_with_its_simulations_at_that_time(
         drawn = [item for item in ax.texts if isinstance(item, Annotation)]
         assert len(drawn) == arrows
         said = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert ("last seen under way" in said) == bool(arrows)
+        assert ("last detected, moving" in said) == bool(arrows)
     low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
     (arrow,) = drawn
     assert (low < arrow.xy).all() and (arrow.xy < high).all()  # else it would not be drawn
