@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from curlshot.data.version import VERSION
+
 ROOT = Path(__file__).resolve().parents[1]
 MAY_IMPORT = {
     "data": set(),
@@ -73,6 +75,17 @@ def test_imports_point_one_way(room: str) -> None:
     for path in modules(room):
         wrong = imported_rooms(path) - MAY_IMPORT[room] - {room}
         assert not wrong, f"{path.relative_to(ROOT)} imports {', '.join(sorted(wrong))}"
+
+
+def test_benchmarks_do_not_import_tests() -> None:
+    for path in sorted((ROOT / "benchmarks").rglob("*.py")):
+        assert "tests" not in imported_rooms(path), path.name
+
+
+def test_the_version_stands_in_one_place_and_is_cited() -> None:
+    cited = re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text("utf-8"), re.M)
+    assert cited is not None and cited[1].strip("'\"") == VERSION
+    assert f"## {VERSION.partition('.dev')[0]}" in (ROOT / "CHANGELOG.md").read_text("utf-8")
 
 
 @pytest.mark.parametrize("room", sorted(ORDER))
