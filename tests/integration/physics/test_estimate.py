@@ -120,7 +120,7 @@ def test_air_table(shared: Path) -> None:
     assert hit.momentum_residual < 0.03
     # An air table hardly brakes, and its discs are known to meet at 7.42 cm.
     assert found.friction.value == pytest.approx(0.003, abs=0.003)
-    assert any("meet at 0.07" in warning for warning in found.warnings)
+    assert any("touch at a distance of 0.07" in warning for warning in found.warnings)
 
 
 @pytest.mark.parametrize("number", [38, 56, 80])

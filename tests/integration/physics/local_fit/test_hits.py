@@ -17,7 +17,7 @@ def test_why_the_friction_between_stones_is_not_told() -> None:
     assert stuck.stone_friction is None
     assert "stopped sliding" in str(stuck.note_stone_friction)
     (blind,) = estimate_locally(seen.assign(theta=np.nan), contacts, radius=RADIUS).collisions
-    assert "spin of A before the hit is not seen" in str(blind.note_stone_friction)
+    assert "spin of A before the hit was not measured" in str(blind.note_stone_friction)
     slid = watch(hit_motion(1.5, 0.2, stone_friction=0.05), np.random.default_rng(1), sd=0.001)
     (told,) = estimate_locally(slid, detect_hits(slid, RADIUS), radius=RADIUS).collisions
     assert told.stone_friction == pytest.approx(0.05, abs=0.02)

@@ -65,5 +65,5 @@ def test_what_few_throws_and_pucks_do_not_tell_is_null_and_said(
     assert {told["stones"]["A"][key] for key in ("sd_x", "in_house", "shot_stone")} == {None}
     assert all(f"warning     {text}" in said for text in told["warnings"])
     assert [text.partition(":")[0] for text in told["warnings"]] == [
-        "discs of radius 0.037 m", "thrown once",
+        "discs of radius 0.037 m are not curling stones", "thrown once",
     ]  # fmt: skip

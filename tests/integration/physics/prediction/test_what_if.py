@@ -26,7 +26,7 @@ def test_a_shot_thrown_again_ends_as_far_from_where_it_did_as_is_stated() -> Non
         again = simulate_measured(tracks, found, radius=RADIUS)
         results = Results(
             Input(("a.csv",), 30.0, 80, 2.7), found.restitution, found.friction,
-            found.collisions, radius=RADIUS, simulations=again.scores, sheet=False,
+            found.collisions, radius=RADIUS, simulations=again.scores, origin_at_tee=False,
         )  # fmt: skip
         assert again.ensemble is not None
         start = measured_start(tracks, results, again.ensemble)

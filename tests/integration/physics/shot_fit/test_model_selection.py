@@ -43,7 +43,7 @@ def test_constant_ice_and_no_curl() -> None:
     assert (found.friction.law, found.friction.a) == ("constant", None)
     assert found.curl.value is None
     assert found.curl.note is not None
-    assert "no curl" in found.curl.note
+    assert "as well without curl" in found.curl.note
 
 
 def test_friction_that_falls_with_the_speed_and_curl() -> None:

@@ -47,7 +47,7 @@ def test_tracks_that_are_as_they_state_stay_as_they_are(glides: int) -> None:
     found = even() if glides == 2 else measure(seen(glides))
     assert found.warnings == ()
     assert {one.stone for one in found.residuals} == {*"ABXY"[: 2 + glides]}
-    assert max(one.size for one in found.residuals) < 1.8
+    assert max(one.rms_ratio for one in found.residuals) < 1.8
     assert not any(one.significant or one.downweighted for one in found.residuals)
 
 
@@ -60,7 +60,7 @@ def test_a_bent_track_is_named_and_leads_no_estimate_astray(
     found = measure(bent(seen(2), stone, aside))
     assert {one.stone for one in found.residuals if one.downweighted} == {stone}
     assert any(one.significant for one in found.residuals if one.downweighted)
-    assert any(f"the track of {stone} is" in warning for warning in found.warnings)
+    assert any(f"the track of {stone} deviates" in warning for warning in found.warnings)
     assert found.shot_fit is not None
     for name, truth in (("restitution", RESTITUTION), ("friction", SLOW)):
         told, before = found.shot_fit[name], even().shot_fit
@@ -74,7 +74,7 @@ def test_a_bent_track_is_named_and_leads_no_estimate_astray(
 
 def test_the_worse_bent_it_is_the_larger_its_misfit() -> None:
     sizes = [
-        max(one.size for one in measure(bent(seen(2), "X", aside)).residuals)
+        max(one.rms_ratio for one in measure(bent(seen(2), "X", aside)).residuals)
         for aside in (0.015, 0.045)
     ]
     assert sizes[1] / sizes[0] == pytest.approx(3, rel=0.2)

@@ -40,10 +40,10 @@ def test_a_shot_is_followed_up_to_a_hit_that_was_not_seen() -> None:
     seen = seen_with_late_touch()
     every, fewer = measure(seen), measure(seen, without=1)
     assert every.shot_fit is not None
-    assert not [text for text in every.warnings if "follows" in text]
+    assert not [text for text in every.warnings if "reproduces" in text]
     assert fewer.shot_fit is not None
-    (text,) = [text for text in fewer.warnings if "follows" in text]
-    assert "the hit of A and C is not as simulated" in text
+    (text,) = [text for text in fewer.warnings if "reproduces" in text]
+    assert "the hit of A and C differs from the simulated one" in text
     end = max(float(trace.t[-1]) for trace in fewer.shot_fit.shots[0].traces.values())
     assert end < every.collisions[-1].t
     assert near(every)
@@ -78,7 +78,7 @@ def test_a_fit_that_does_not_settle_is_left_before_its_last_hit(
     assert found.shots[0].hits == shot.hits[:1]
     assert (
         end
-        == f"until {shot.times[-1] - 0.1:.2f} s: with the hit of A and C the fit does not settle"
+        == f"until {shot.times[-1] - 0.1:.2f} s: the fit does not converge with the hit of A and C"
     )
 
 
