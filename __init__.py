@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         Config,
         PhysicsConfig,
         ReportConfig,
+        SearchConfig,
         StonesConfig,
         TablesConfig,
         VideoConfig,
@@ -44,8 +45,8 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "config": (
-        "CameraConfig", "Config", "PhysicsConfig", "ReportConfig", "StonesConfig", "TablesConfig",
-        "VideoConfig",
+        "CameraConfig", "Config", "PhysicsConfig", "ReportConfig", "SearchConfig", "StonesConfig",
+        "TablesConfig", "VideoConfig",
     ),
     "data.errors": ("CurlshotError", "InputError", "SceneError"),
     "data.estimates": ("Estimate",),
@@ -86,6 +87,7 @@ __all__ = [
     "RigidBody",
     "Run",
     "SceneError",
+    "SearchConfig",
     "Season",
     "Shot",
     "SimulatedShot",

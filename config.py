@@ -292,6 +292,12 @@ class SearchConfig(_Section):
         Least evidence for a stone where one was seen a moment ago.
     max_centre_shift_ratio : float
         Largest distance of a centre from the peak of the response, in radii of cap or disc.
+
+    Examples
+    --------
+    >>> import curlshot
+    >>> curlshot.SearchConfig(min_evidence=1.2).min_evidence
+    1.2
     """
 
     search_half_width: float = setting(2.40, "stones are searched for on |x| up to", LENGTH, "m")

@@ -45,7 +45,7 @@ def config_option(parser: argparse.ArgumentParser) -> None:
 
 
 def mass_option(parser: argparse.ArgumentParser) -> None:
-    """Add the masses of the discs, for commands that tell their physics."""
+    """Add the masses of the discs, for commands that estimate e and μ."""
     parser.add_argument(
         "--mass",
         dest="masses",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from curlshot.data.rounding import DASH, MINUS, plus_minus
@@ -48,8 +49,13 @@ class Estimate:
             return format(str(self), spec)
         if self.value is None:
             return str(self)
-        numbers = [self.value] if self.stderr is None else [self.value, self.stderr]
-        return " ± ".join(format(number, spec).replace("-", MINUS, 1) for number in numbers)
+        value = format(self.value, spec).replace("-", MINUS, 1)
+        if self.stderr is None:
+            return value
+        error = format(self.stderr, spec)
+        if self.stderr > 0 and not re.search("[1-9]", error):
+            error = f"{self.stderr:.1g}"  # an error that is not zero never prints as zero
+        return f"{value} ± {error}"
 
 
 @dataclass(frozen=True)

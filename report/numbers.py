@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def assumed(guess: Prediction) -> str:
-    """Say which e a prediction takes, and which μ where that is given and not told by the ice."""
+    """Return the e that a prediction assumes, and the μ where it was given and not measured."""
     e, mu = guess.restitution.value, guess.friction
     said = "e" if e is None else f"e = {e:.3g}"
     return f"{said} and μ = {mu.value:.3g} assumed" if mu.stderr == 0 else f"{said} assumed"

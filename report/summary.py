@@ -258,7 +258,7 @@ def _simulated(
         if score.rmse is not None:
             off = f"{unit.little(score.rmse)} RMS error"
         # Only a shot that was fitted as a whole begins with what fits it.
-        how = "" if results.joint_estimate is None else ", as fitted"
+        how = "" if results.joint_estimate is None else ", fitted shot"
         yield f"{models}{how}: {off}", _each("at the end", score.rest_error, score.rest_sd, unit)
 
 

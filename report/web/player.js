@@ -66,7 +66,7 @@ class Player {
   #drawPlan() {
     const { data } = this, measured = placesOf(this.stones);
     const simulated = Object.values(this.simulations).flatMap(placesOf);
-    // A simulation gone astray may leave the picture.
+    // A diverged simulation may leave the plan.
     const places = (this.places = measured.concat(near(measured, 4 * data.radius, simulated)));
     this.plan = new PlanView(byId("plan-view"), data, places);
     this.hits = data.hits.filter((hit) => hit.x !== null).map((hit) => (

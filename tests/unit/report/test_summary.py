@@ -25,13 +25,13 @@ def test_the_summary_says_how_far_the_last_places_may_be_off(shot):
         rest_sd={"A": 0.05, "B": 0.002, "C": None, "D": 0.1},
     )
     text = summary(replace(shot.results, simulations={"frictional": score}), shot.tracks)
-    how = "frictional, as fitted" if shot.results.joint_estimate is not None else "frictional"
+    how = "frictional, fitted shot" if shot.results.joint_estimate is not None else "frictional"
     lines = text.splitlines()
     said = lines.index(f"simulated   {how}: 2.0 cm RMS error")
     off = "at the end      A 3.1 cm (± 5.0 cm), B 1.2 mm (± 2.0 mm), D 20.0 cm (± 10.0 cm)"
     assert lines[said + 1] == f"            {off}"
     apart = summary(replace(shot.results, joint_estimate=None), shot.tracks)
-    assert "simulated   frictional: " in apart and "as fitted" not in apart
+    assert "simulated   frictional: " in apart and "fitted shot" not in apart
     unknown = replace(shot.results, simulations={"frictional": replace(score, rest_sd={})})
     assert "at the end" not in summary(unknown, shot.tracks)
 
@@ -41,7 +41,9 @@ def test_models_that_come_to_the_same_are_said_together(shot):
     one = shot.results.simulations["frictional"]
     scores = {"point-mass": one, "rigid-body": replace(one, rmse=0.5), "frictional": one}
     lines = summary(replace(shot.results, simulations=scores), shot.tracks).splitlines()
-    said = [line.split(":")[0].removesuffix(", as fitted") for line in lines if "simulated" in line]
+    said = [
+        line.split(":")[0].removesuffix(", fitted shot") for line in lines if "simulated" in line
+    ]
     assert said == ["simulated   point-mass, frictional", "simulated   rigid-body"]
 
 
