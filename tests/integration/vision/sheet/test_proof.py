@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -11,14 +13,16 @@ from curlshot.tests.helpers.vision.proof import (
     ICE,
     RED,
     SCENE,
+    SIZE,
     drawn,
     level,
     proved,
     seen,
 )
-from curlshot.vision.optics.pose import project
+from curlshot.vision.optics.pose import View, project
 from curlshot.vision.sheet.house import find_house
 from curlshot.vision.sheet.house_fit import HouseFit
+from curlshot.vision.sheet.marks import measure_marks
 from curlshot.vision.sheet.proof import is_house, stands_alone, worth
 from curlshot.vision.video.picture import Image
 
@@ -74,3 +78,62 @@ def test_a_circle_more_than_a_house_has_makes_a_target(low: tuple[Image, HouseFi
     assert not is_house(target, found.evidence, found.view, found.rig)
     assert not stands_alone(target, found.evidence, found.view, found.rig)
     assert stands_alone(picture, found.evidence, found.view, found.rig)
+
+
+def test_corners_that_a_lens_leaves_dark_are_no_circle() -> None:
+    scale, border = 170.0, 2.2
+    picture = np.full((SIZE[1], SIZE[0], 3), ICE, np.uint8)
+    for radius, colour in HOUSE:
+        cv2.circle(picture, (480, 270), round(scale * radius), colour, -1, cv2.LINE_AA)
+    x, y = np.meshgrid(np.arange(SIZE[0]) - 480, np.arange(SIZE[1]) - 270)
+    picture[np.abs(x) > scale * border] = (90, 50, 30)
+    light = 1 - 0.8 * (x**2 + y**2) / (480**2 + 270**2)
+    dark = np.asarray(picture * light[..., None], np.uint8)
+    view, rig = View(np.array([0.0, 0.0, 0.0, np.log(scale * 9)])), level()[1]
+    evidence = measure_marks(dark, view.vector, rig, reach=6.0)
+    assert stands_alone(dark, evidence, view, rig)
+
+
+def test_a_house_is_worth_most() -> None:
+    whole, few, none = (worth(seen(drawn(rings))) for rings in (HOUSE, HOUSE[::2], ()))
+    assert 3.0 < whole <= 3.5
+    assert 0 < few < whole
+    assert none == 0
+
+
+def test_two_circles_of_which_none_is_the_second_need_ice_around_them() -> None:
+    assert worth(seen(drawn(HOUSE[::2]))) > 0
+    assert worth(seen(drawn(HOUSE[::2], ground=(60, 60, 60)))) == 0
+    assert worth(seen(drawn(HOUSE[:1]))) == 0
+
+
+def test_two_circles_of_which_none_is_the_second_are_none_of_a_sliver() -> None:
+    """Of a sliver of the house the 8-ft circle looks like the 4-ft one of a nearer house."""
+    evidence = seen(drawn(HOUSE[::2]))
+    assert worth(evidence) > 0
+    assert worth(replace(evidence, visible=0.42 * evidence.visible)) == 0
+    whole = seen(drawn(HOUSE))
+    assert worth(replace(whole, visible=0.42 * whole.visible)) > 0
+
+
+@pytest.mark.parametrize("radius", [0.9, 1.5, 2.5])
+def test_a_circle_where_a_house_has_none_disproves_it(radius: float) -> None:
+    more = sorted((*HOUSE, (radius, (90, 140, 60))), reverse=True)
+    assert not proved(drawn(tuple(more)))
+
+
+@pytest.mark.parametrize("rings", [False, True])
+def test_the_4_ft_circle_is_not_taken_for_the_12_ft_one(rings: bool) -> None:
+    """Nor where less than half of the circles around it, three times as large, is in view."""
+    larger = tuple((3 * radius, colour) for radius, colour in HOUSE[:2]) if rings else ()
+    image = drawn((*larger, (1.829, RED), (0.619, ICE)))[70:-70]
+    assert proved(image) is not rings
+
+
+@pytest.mark.parametrize(("tall", "wide"), [(540, 960), (400, 560)])
+def test_without_an_8_ft_circle_what_is_around_must_be_in_view(tall: int, wide: int) -> None:
+    image = drawn((HOUSE[0], HOUSE[2]))
+    rows, columns = (SIZE[1] - tall) // 2, (SIZE[0] - wide) // 2
+    image = image[rows : SIZE[1] - rows, columns : SIZE[0] - columns]
+    assert worth(seen(image)) > 0
+    assert proved(image) is (wide == SIZE[0])
