@@ -135,7 +135,7 @@ class Run:
     def glides(self) -> pd.DataFrame:
         """The free glides, one row each.
 
-        ``stone, t0, t1, friction, stderr, turn, stderr_turn, speed``; units in
+        ``stone, t0, t1, friction, stderr, turn_rate, stderr_turn_rate, speed``; units in
         ``attrs["units"]``.
         """
         from curlshot.report.tables.run import glides_of_run
@@ -148,8 +148,9 @@ class Run:
 
         ``stone, team, t0, t1, frames, seen, path, top_speed``, how it turned and curled
         (``turns, curl``), where it rests (``x, y, to_tee, in_house, lies``), and what its glides
-        show (``friction, turn, mean_speed, spin``), each with its ``sd_``; units in
-        ``attrs["units"]``.
+        show (``friction, turn_rate, mean_speed, spin``), each with its ``sd_``. ``beyond`` is how
+        far from the tee a stone was that still moved away from it, m; ``note`` says why a number
+        is unknown. Units in ``attrs["units"]``.
         """
         from curlshot.report.tables.run import stones_of_run
 
