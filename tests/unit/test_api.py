@@ -5,8 +5,10 @@ from __future__ import annotations
 import subprocess
 import sys
 import types
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -45,3 +47,64 @@ def test_the_import_loads_no_library() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT.parent
     )
     assert done.stdout.strip() == ""
+
+
+STONES = (curlshot.StoneStart("A", 0.0, 2.0, vy=-1.5), curlshot.StoneStart("B", 0.0, 0.0))
+
+
+@pytest.fixture(scope="module")
+def simulated() -> curlshot.SimulatedShot:
+    return curlshot.simulate(curlshot.Shot(STONES))
+
+
+@pytest.mark.parametrize(
+    ("method", "arguments", "name"),
+    [
+        ("throw", {"samples": 0}, "samples"),
+        ("throw", {"samples": -1}, "samples"),
+        ("throw", {"samples": "a"}, "samples"),
+        ("throw", {"throw_sd": (1,)}, "throw_sd"),
+        ("throw", {"throw_sd": 0.1}, "throw_sd"),
+        ("throw", {"throw_sd": (-1, 0.1)}, "throw_sd"),
+        ("throw", {"throw_sd": ("a", 0.1)}, "throw_sd"),
+        ("sample", {"times": [-1]}, "times"),
+        ("sample", {"times": None}, "times"),
+        ("sample", {"times": ["a"]}, "times"),
+        ("table", {"fps": 0}, "fps"),
+        ("table", {"fps": "a"}, "fps"),
+        ("plot", {"ax": "x"}, "ax"),
+    ],
+)
+def test_a_simulated_shot_names_the_argument_that_makes_no_sense(
+    simulated: curlshot.SimulatedShot, method: str, arguments: dict[str, Any], name: str
+) -> None:
+    with pytest.raises(curlshot.InputError, match=f"^`{name}`: "):
+        getattr(simulated, method)(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("parts", "names"),
+    [
+        ({"stones": ("A",)}, "`stones`: 'A' is not a StoneStart"),
+        ({"stones": STONES[0]}, "`stones`: .* is not a tuple of StoneStart"),
+        ({"stones": (replace(STONES[0], x="q"),)}, "`x` of stone A: 'q' is not a number"),
+        ({"stones": (replace(STONES[0], name=1),)}, "`name`: 1 is not the name"),
+        ({"stones": (replace(STONES[0], omega_after=("q",)),)}, "`omega_after` of stone A"),
+        ({"stones": (replace(STONES[0], x=float("nan")),)}, "stone A: x = nan is not finite"),
+        ({"radius": None}, "`radius`: None is not a number"),
+        ({"bounds": "sheet"}, "`bounds`: 'sheet' is not Bounds"),
+        ({"ice": "fcv1"}, "`ice`: 'fcv1' is not a law of ice"),
+        ({"curl": curlshot.NoCurl}, "`curl`: .* is not a law of curl"),
+        ({"impact": "frictional"}, "`impact`: 'frictional' is not a model of hits"),
+        (
+            {"impact": curlshot.Frictional(restitution=2)},
+            "`restitution` of `impact`: 2 is not a number 0 or more, at most 1",
+        ),
+        ({"impact": curlshot.Frictional(inertia=0.0)}, "`inertia` of `impact`: .* above 0"),
+        ({"impact": curlshot.PointMass("q")}, "`restitution` of `impact`: 'q'"),  # type: ignore[arg-type]
+    ],
+)
+def test_a_shot_names_the_part_that_makes_no_sense(parts: dict[str, Any], names: str) -> None:
+    shot = replace(curlshot.Shot(STONES), **parts)
+    with pytest.raises(curlshot.InputError, match=names):
+        curlshot.simulate(shot)
