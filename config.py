@@ -26,6 +26,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Self
 
+from curlshot.data.arguments import check_type
 from curlshot.data.coach_units import UNITS
 from curlshot.data.errors import InputError
 from curlshot.data.inputs import PROJECT_SUFFIXES
@@ -452,6 +453,11 @@ class Config:
     report: ReportConfig = field(default_factory=ReportConfig)
     search: SearchConfig = field(default_factory=SearchConfig)
 
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            kind: Any = item.default_factory
+            check_type(f"`{item.name}`", getattr(self, item.name), kind, f"a {kind.__name__}")
+
     def replace(self, **settings: Any) -> Self:
         """Return a copy with other values of some settings, each by its own name.
 
@@ -565,6 +571,19 @@ class Config:
             unit, meaning = item.metadata["unit"], item.metadata["meaning"]
             lines.append(f"{key:<25s} # {unit + ': ' if unit else ''}{meaning}")
         return "\n".join([*lines, ""])
+
+
+def with_settings(config: object, settings: Mapping[str, Any]) -> Config:
+    """Return a configuration with other values of some settings; see `Config.replace`.
+
+    Raises
+    ------
+    InputError
+        What is no configuration, or a value that makes no sense.
+    """
+    if not isinstance(config, Config):
+        raise InputError(f"`config`: {config!r} is not a Config")
+    return config.replace(**settings)
 
 
 def _nearest(name: str, known: Mapping[str, Any]) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from curlshot.config import Config
+from curlshot.data.arguments import checked_path
 from curlshot.data.coach_units import UNITS, Unit
 from curlshot.data.errors import InputError
 from curlshot.data.estimates import Estimate, Friction, NotedEstimate
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from curlshot.report.figures.parts import OnAxes
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Run:
     """The outcome of a run; it prints the answer in ten lines.
 
@@ -87,7 +88,7 @@ class Run:
     house: House | None = None
     posterior: pd.DataFrame | None = None
     ensemble: Ensemble | None = None
-    measurement: Measurement | None = field(default=None, compare=False)
+    measurement: Measurement | None = None
     config: Config = field(default_factory=Config)
 
     # ------------------------------------------------------------------------ the answer
@@ -135,7 +136,7 @@ class Run:
     def glides(self) -> pd.DataFrame:
         """The free glides, one row each.
 
-        ``stone, t0, t1, friction, stderr, turn, stderr_turn, speed``; units in
+        ``stone, t0, t1, friction, stderr, turn_rate, stderr_turn_rate, speed``; units in
         ``attrs["units"]``.
         """
         from curlshot.report.tables.run import glides_of_run
@@ -148,8 +149,9 @@ class Run:
 
         ``stone, team, t0, t1, frames, seen, path, top_speed``, how it turned and curled
         (``turns, curl``), where it rests (``x, y, to_tee, in_house, lies``), and what its glides
-        show (``friction, turn, mean_speed, spin``), each with its ``sd_``; units in
-        ``attrs["units"]``.
+        show (``friction, turn_rate, mean_speed, spin``), each with its ``sd_``. ``beyond`` is how
+        far from the tee a stone was that still moved away from it, m; ``note`` says why a number
+        is unknown. Units in ``attrs["units"]``.
         """
         from curlshot.report.tables.run import stones_of_run
 
@@ -264,13 +266,16 @@ class Run:
         collisions = self.results.collisions
         _check_known("hit", hit, range(1, len(collisions) + 1))
         return self._several(
-            lambda on: figures.hit_figure(collisions[hit - 1], hit, self.results.radius, on), ax
+            lambda on: figures.hit_figure(collisions[hit - 1], hit, self.results.radius, on),
+            ax,
+            of_tracks=False,
         )
 
     def plot_residuals(self, ax: OnAxes = None) -> NDArray[Any]:
         """Draw measured less smoothed places and their distribution, on two by two axes."""
         from curlshot.report import figures
 
+        self._need_tracks()
         residuals, results = self.residuals, self.results
         return self._several(
             lambda on: figures.residuals_figure(
@@ -286,7 +291,9 @@ class Run:
         if self.results.joint_estimate is None and self.posterior is None:
             raise InputError("the whole shot was not fitted: no posterior to draw")
         return self._several(
-            lambda on: figures.posterior_figure(self.results.joint_estimate, self.posterior, on), ax
+            lambda on: figures.posterior_figure(self.results.joint_estimate, self.posterior, on),
+            ax,
+            of_tracks=False,
         )
 
     @property
@@ -303,9 +310,10 @@ class Run:
         """Return the name of a stone of this run; by default the first that moved."""
         from curlshot.report.tables import moving_stones
 
+        self._need_tracks()
         names = sorted(str(name) for name in self.tracks["stone"].unique())
         moved = moving_stones(self.tracks, self.results.collisions, self.results.radius)
-        if stone is None and names:
+        if stone is None:
             return (*moved, *names)[0]
         _check_known("stone", stone, names)
         return str(stone)
@@ -314,12 +322,19 @@ class Run:
         axes: Axes = self._several(draw, ax)[0]
         return axes
 
-    def _several(self, draw: Callable[[OnAxes], Figure], ax: OnAxes) -> NDArray[Any]:
+    def _several(
+        self, draw: Callable[[OnAxes], Figure], ax: OnAxes, of_tracks: bool = True
+    ) -> NDArray[Any]:
         from curlshot.report.notebook import drawn
 
+        if of_tracks:
+            self._need_tracks()
+        return drawn(draw, ax)
+
+    def _need_tracks(self) -> None:
+        """Refuse a run without tracks."""
         if self.tracks.empty:
             raise InputError(f"{self.out}: no tracks.csv in it, so there is nothing to draw")
-        return drawn(draw, ax)
 
     # ------------------------------------------------------------------------- the files
 
@@ -350,9 +365,10 @@ class Run:
         """
         from curlshot.report.write import WRITTEN, write_run
 
+        path = checked_path("folder", folder)
         if self.measurement is None:
             raise InputError(f"{folder}: a loaded run is not written again; copy its folder")
-        path = check_target(folder, self.measurement.files)
+        check_target(path, self.measurement.files)
         with staged(path, replaces=WRITTEN) as stage:
             write_run(stage, self, progress)
         return replace(self, out=path)
@@ -362,7 +378,7 @@ def check_target(folder: str | Path, files: Sequence[Path]) -> Path:
     """Return the folder of a run; refuse one that cannot be written or that holds an input."""
     from curlshot.report.write import WRITTEN
 
-    path = check_folder(folder)
+    path = check_folder(checked_path("out", folder))
     own = {path.resolve() / name for name in WRITTEN}
     lost = [file for file in files if file.resolve() in own]
     if lost:
@@ -406,14 +422,12 @@ def load(folder: str | Path) -> Run:
     >>> again.tracks.shape == run.tracks.shape
     True
     """
-    import pandas as pd
-
     from curlshot.data.column_units import with_units
     from curlshot.data.results_file import read_results
-    from curlshot.data.tracks import empty_tracks, load_tracks, simulation_table
+    from curlshot.data.tracks import empty_tracks, load_tracks, read_numbers, simulation_table
     from curlshot.physics.prediction.ensemble import read_ensemble
 
-    path = Path(folder)
+    path = checked_path("folder", folder)
     out = path.parent if path.name == "results.json" else path
     if not out.is_dir():
         raise InputError(f"{out}: no such folder; name the folder of a run")
@@ -427,16 +441,22 @@ def load(folder: str | Path) -> Run:
     at_tee = results.origin_at_tee and curling_size(results.radius)
     return Run(
         with_units(load_tracks(there["tracks.csv"]) if "tracks.csv" in there else empty_tracks()),
-        pd.read_csv(there["camera.csv"]) if "camera.csv" in there else None,
+        read_numbers(there["camera.csv"], _CAMERA) if "camera.csv" in there else None,
         results,
         load_tracks(there["simulation.csv"], model=True)
         if "simulation.csv" in there
         else simulation_table(None, ""),
         out=out,
         house=HOUSE if at_tee else None,
-        posterior=pd.read_csv(there["posterior.csv"]) if "posterior.csv" in there else None,
+        posterior=read_numbers(there["posterior.csv"], _POSTERIOR)
+        if "posterior.csv" in there
+        else None,
         ensemble=read_ensemble(there["ensemble.json"]) if "ensemble.json" in there else None,
     )
 
 
 _OPTIONAL = ("tracks.csv", "camera.csv", "simulation.csv", "posterior.csv", "ensemble.json")
+
+_CAMERA = ("frame", "t", *(f"h{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)))
+_POSTERIOR = ("sample", "restitution", "friction", "stone_friction")
+"""Columns that a ``camera.csv`` and a ``posterior.csv`` have in every version."""

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from curlshot.config import Config, refuse_clip_settings
+from curlshot.config import Config, refuse_clip_settings, with_settings
+from curlshot.data.arguments import checked_path, checked_paths
 from curlshot.data.convert import check_conversion, write_converted
 from curlshot.data.errors import SceneError
 from curlshot.data.importers import are_tables, import_tracks
-from curlshot.data.inputs import find_inputs, named, sample_clip
+from curlshot.data.inputs import find_inputs, sample_clip
 from curlshot.data.measurement import Measurement
 from curlshot.data.progress import Progress, no_progress
 from curlshot.outcome import Run, check_target
@@ -60,7 +61,8 @@ def run(
     >>> print(curlshot.run("still.csv").restitution)
     — (no stone moves: restitution and friction are not identifiable)
     """
-    config, files = config.replace(**settings), find_inputs(named(inputs) or sample_clip())
+    config = with_settings(config, settings)
+    files = find_inputs(checked_paths("inputs", inputs) or sample_clip())
     if out is not None:
         check_target(out, files)  # before the work, not after
     measured = measure(files, config, progress)
@@ -107,14 +109,17 @@ def convert(
     >>> curlshot.convert("tracks.csv", "tracks.txt").frames
     2
     """
-    files, path = find_inputs(inputs), Path(out)
+    config = with_settings(config, settings)
+    files, path = find_inputs(checked_paths("inputs", inputs)), checked_path("out", out)
     check_conversion(files, path, over is not None)
-    measured = _import(files, config.replace(**settings), check_discs=False)
+    measured = _import(files, config, check_discs=False)
     if over is None:
         return write_converted(measured, path)
     from curlshot.vision.optics.tracker_view import projected
 
-    return write_converted(measured, path, projected(measured, find_inputs([over]), path))
+    return write_converted(
+        measured, path, projected(measured, find_inputs([checked_path("over", over)]), path)
+    )
 
 
 def measure(

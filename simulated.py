@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from curlshot.data.arguments import check_type
 from curlshot.data.column_units import with_units
 from curlshot.data.errors import InputError
+from curlshot.data.limits import POSITIVE, SD_ANGLE, SD_SPEED, THROWS
 from curlshot.data.progress import Progress, no_progress
 from curlshot.data.sheet import HOUSE, House
 from curlshot.outcome import Run
@@ -16,7 +21,8 @@ from curlshot.physics.prediction.restart import read_start, sampled, shot_file, 
 from curlshot.physics.prediction.start import Start, measured_start, written_start
 from curlshot.physics.prediction.what_if import Amount, Changes, changed
 from curlshot.physics.simulator import simulate as simulator
-from curlshot.physics.simulator.simulation import HitEvent, Rest, Shot, Simulation, check_shot
+from curlshot.physics.simulator.given import check_given
+from curlshot.physics.simulator.simulation import HitEvent, Rest, Shot, Simulation
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -87,11 +93,26 @@ class SimulatedShot:
         DataFrame
             ``stone, frame, t, x, y, theta, vx, vy, omega``, units in ``attrs["units"]``. A stone
             that has left the sheet has no more rows.
+
+        Raises
+        ------
+        curlshot.data.errors.InputError
+            Times that are not numbers, or lie before 0.
         """
-        return with_units(self.simulation.sample(times))
+        try:
+            return with_units(self.simulation.sample(times))
+        except (TypeError, ValueError):
+            raise InputError("`times`: not all of them are numbers of seconds, 0 or more") from None
 
     def table(self, fps: float = FPS) -> pd.DataFrame:
-        """Return all states until everything is at rest, as ``simulation.csv``."""
+        """Return all states until everything is at rest, as ``simulation.csv``.
+
+        Raises
+        ------
+        curlshot.data.errors.InputError
+            A rate that is not positive, or too high.
+        """
+        POSITIVE.check("`fps`", fps)
         return with_units(sampled(self.simulation, fps, self.shot.impact.name))
 
     def throw(
@@ -118,7 +139,19 @@ class SimulatedShot:
             As ``outcomes.csv``: where each stone ends in each throw.
         odds : dict
             As ``whatif.json``: the same in sum, by stone in ``odds["stones"]``.
+
+        Raises
+        ------
+        curlshot.data.errors.InputError
+            Numbers that make no sense.
         """
+        THROWS.check("`samples`", samples)
+        if throw_sd is not None:
+            pair = throw_sd if isinstance(throw_sd, Sequence | np.ndarray) else ()
+            if len(pair) != 2:
+                raise InputError(f"`throw_sd`: {throw_sd!r} is not a pair of speed and direction")
+            for limits, value in zip((SD_SPEED, SD_ANGLE), pair, strict=True):
+                limits.check("`throw_sd`", value)
         outcomes, odds = throw_often(
             self.start, self.changes, samples, throw_sd, self.source, progress
         )
@@ -217,6 +250,8 @@ def simulate(
     curlshot.data.errors.InputError: `speed`: 'fast' is not a speed above 0, at most 10 m/s, nor \
 a factor such as 1.1x, at most 10x
     """
+    kinds = (Shot, Run, str, os.PathLike)
+    check_type("`shot`", shot, kinds, "a Shot, a Run, or the path of one")
     changes = Changes.of(
         restitution=restitution, friction=friction, speed=speed, spin=spin, aim_offset=aim_offset
     )
@@ -228,9 +263,11 @@ a factor such as 1.1x, at most 10x
 def _start(shot: Shot | Run | str | Path) -> Start:
     """Return the shot as it begins."""
     if isinstance(shot, Shot):
-        check_shot(shot)
+        check_given(shot)
         return written_start(shot)
     if isinstance(shot, Run):
+        if shot.tracks.empty:
+            raise InputError(f"{shot.out}: no tracks.csv in it, so there is no shot to throw again")
         if shot.ensemble is None:
             raise InputError("this run has no shot to throw again: no stone moves in it")
         return measured_start(shot.tracks, shot.results, shot.ensemble)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from curlshot.data.errors import InputError
-from curlshot.data.limits import POSITIVE, SPEED, SPIN, Limits, has_length
+from curlshot.data.limits import POSITIVE, SD_ANGLE, SD_SPEED, SPEED, SPIN, Limits, has_length
 
 if TYPE_CHECKING:
     from curlshot.physics.prediction.what_if import Amount
@@ -83,8 +83,8 @@ def throw_sd(text: str) -> tuple[float, float]:
         raise argparse.ArgumentTypeError(f"{text!r} is not V,A, e.g. 0.0076,0.0018")
     speed, angle = parts
     return (
-        number(speed, Limits(0.0, 1.0, "a standard deviation in m/s, 0 to 1")),
-        number(angle, Limits(0.0, 1.0, "a standard deviation in rad, 0 to 1")),
+        number(speed, SD_SPEED),
+        number(angle, SD_ANGLE),
     )
 
 

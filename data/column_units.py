@@ -14,7 +14,7 @@ _NAMES = {
           "place_y", "dx", "dy"),
     "m/s": ("vx", "vy", "speed", "mean_speed", "top_speed", "closing_speed"),
     "rad": ("theta", "turned", "rise_a", "rise_b"),
-    "rad/s": ("omega", "spin", "turn"),
+    "rad/s": ("omega", "spin", "turn_rate"),
 }  # fmt: skip
 _UNITS = {name: unit for unit, names in _NAMES.items() for name in names}
 _PREFIXES = ("meas_", "sd_", "stderr_")

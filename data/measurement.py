@@ -23,7 +23,7 @@ class Duplicate(NamedTuple):
     of: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Measurement:
     """Detections of the stones and where they come from.
 

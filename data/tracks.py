@@ -351,6 +351,38 @@ def load_tracks(path: Path, model: bool = False) -> pd.DataFrame:
         raise InputError(f"{path}: not a {path.name} of this program") from None
 
 
+def read_numbers(path: Path, columns: Sequence[str]) -> pd.DataFrame:
+    """Read a table of numbers that a run wrote, empty cells as NaN.
+
+    Parameters
+    ----------
+    path : Path
+        ``camera.csv`` or ``posterior.csv``.
+    columns : sequence of str
+        Columns that must be there.
+
+    Raises
+    ------
+    InputError
+        Where the file is no such thing.
+    """
+    import pandas as pd
+
+    try:
+        table = pd.read_csv(path)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
+    except ValueError:  # pandas' own mistakes are ValueErrors
+        raise InputError(f"{path}: not a {path.name} of this program") from None
+    missing = [name for name in columns if name not in table]
+    if missing:
+        raise InputError(f"{path}: no column {', '.join(missing)}; not a {path.name}")
+    for name in table:
+        if not pd.api.types.is_numeric_dtype(table[name]):
+            raise InputError(f"{path}: column {name} is not all numbers")
+    return table
+
+
 def simulation_table(
     simulated: pd.DataFrame | None, model: str, of_team: Mapping[str, str] | None = None
 ) -> pd.DataFrame:

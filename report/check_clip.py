@@ -8,7 +8,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from curlshot.config import Config
+from curlshot.config import Config, with_settings
+from curlshot.data.arguments import checked_paths
 from curlshot.data.inputs import find_inputs
 from curlshot.data.progress import Progress, no_progress
 from curlshot.report.check import check_figure
@@ -56,8 +57,8 @@ def check(
     'input       sample.mp4: 1 frame'
     >>> figure.savefig("check.png")
     """
-    config = config.replace(**settings)
-    files = find_inputs(inputs)
+    config = with_settings(config, settings)
+    files = find_inputs(checked_paths("inputs", inputs))
     video = open_video(files, config.video)
     seen = track_camera(video, config, progress)
     cameras = seen.cameras

@@ -78,7 +78,7 @@ _CHOICES = (
 _ICE = (
     Column("stone", "stone", kind="word"),
     Column("μ", "friction", stderr="sd_friction"),
-    Column("turn", "turn", "rad/s", stderr="sd_turn"),
+    Column("turn", "turn_rate", "rad/s", stderr="sd_turn_rate"),
     Column("mean speed", "speed", "m/s", decimals=3),
     Column("spin", "spin", "rad/s", stderr="sd_spin"),
 )

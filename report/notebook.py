@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from curlshot.data.arguments import check_type
 from curlshot.report.figures import plan_figure
 from curlshot.report.figures.parts import OnAxes
 from curlshot.report.numbers import DASH, count
@@ -30,8 +32,11 @@ DPI = 80
 def drawn(draw: Callable[[OnAxes], Figure], on: OnAxes) -> NDArray[np.object_]:
     """Draw a figure on given axes, or on new ones that a notebook shows; return the axes."""
     if on is not None:
+        given = np.asarray(on, object).ravel()
+        for one in given:
+            check_type("`ax`", one, Axes, "axes of matplotlib")
         draw(on)
-        return np.asarray(on, object).ravel()
+        return given
     with shown():
         figure = draw(None)
     axes = np.empty(len(figure.axes), object)

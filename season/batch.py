@@ -7,10 +7,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from curlshot.config import Config
+from curlshot.config import Config, with_settings
+from curlshot.data.arguments import checked_path, checked_paths
 from curlshot.data.errors import CurlshotError
 from curlshot.data.files import check_folder
-from curlshot.data.inputs import named
+from curlshot.data.limits import JOBS
 from curlshot.data.progress import Progress, no_progress
 from curlshot.data.run_folders import apart
 from curlshot.outcome import Run
@@ -60,9 +61,10 @@ def run_each(
     >>> print(failed["gone"])
     gone.mp4: no such file
     """
-    config = config.replace(**settings)
-    folder = check_folder(out)
-    once = {path.resolve(): path for path in map(Path, named(clips))}
+    config = with_settings(config, settings)
+    JOBS.check("`jobs`", jobs)
+    folder = check_folder(checked_path("out", out))
+    once = {path.resolve(): path for path in map(Path, checked_paths("clips", clips))}
     tasks = {name: (clip, folder / name) for name, clip in apart([*once.values()]).items()}
     if min(jobs, len(tasks)) > 1:
         from curlshot.season.parallel import in_processes

@@ -7,19 +7,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from curlshot.data.arguments import check_type, checked_path, checked_paths
 from curlshot.data.files import check_folder, staged
-from curlshot.data.run_folders import find_results, read_runs
+from curlshot.data.results import Results
+from curlshot.data.run_folders import apart, find_results, read_runs
 from curlshot.data.version import VERSION
 from curlshot.outcome import Run
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from curlshot.data.results import Results
     from curlshot.physics.statistics.pool import Pooled
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Season:
     """What many shots show together; it prints a line per shot, then e and μ of all.
 
@@ -63,7 +64,7 @@ class Season:
 
 
 def combine(
-    runs: str | Path | Sequence[str | Path] | Mapping[str, Run | Results],
+    runs: str | Path | Run | Sequence[str | Path] | Sequence[Run] | Mapping[str, Run | Results],
     out: str | Path | None = None,
     left_out: Mapping[str, str] | None = None,
 ) -> Season:
@@ -74,8 +75,9 @@ def combine(
 
     Parameters
     ----------
-    runs : str or Path, sequence of them, or mapping of str to Run or Results
-        Folders of runs, or folders of such folders; or the runs by name, as `run_each` has them.
+    runs : str, Path or Run, sequence of them, or mapping of str to Run or Results
+        Folders of runs, or folders of such folders; or the runs, also by name, as `run_each` has
+        them. Runs without a name are named by their folders, else by their inputs.
     out : str or Path, optional
         Folder for the page, the tables and the figure; nothing is written without it.
     left_out : mapping of str to str, optional
@@ -106,12 +108,18 @@ def combine(
     """
     from curlshot.physics.statistics.season import hits_table, pooled, repeated, shots_table
 
-    folder = None if out is None else check_folder(out)
+    folder = None if out is None else check_folder(checked_path("out", out))
+    if isinstance(runs, Run):
+        runs = [runs]
+    if isinstance(runs, Sequence) and runs and all(isinstance(one, Run) for one in runs):
+        runs = _by_name([one for one in runs if isinstance(one, Run)])
     if isinstance(runs, Mapping):
+        for one in runs.values():
+            check_type("`runs`", one, (Run, Results), "a Run or its Results")
         shots = {name: one.results if isinstance(one, Run) else one for name, one in runs.items()}
         places = {n: one.out for n, one in runs.items() if isinstance(one, Run) and one.out}
     else:
-        files = find_results(runs)
+        files = find_results(checked_paths("runs", runs))
         shots, places = read_runs(files), {name: file.parent for name, file in files.items()}
     again = repeated(shots)
     unused = {name: f"the same shot as {one}: counted once" for name, one in again.items()}
@@ -123,6 +131,17 @@ def combine(
         pages = {name: path / "report.html" for name, path in places.items() if name in shots}
         _write(together, folder, pages)
     return together
+
+
+def _by_name(runs: Sequence[Run]) -> dict[str, Run]:
+    """Return runs by the names of their folders, or of their inputs where nothing is written."""
+    places = [
+        Path(next(iter(run.results.input.files), "shot"))
+        if run.out is None
+        else run.out.resolve().with_name(f"{run.out.resolve().name}.run")
+        for run in runs
+    ]
+    return dict(zip(apart(places), runs, strict=True))
 
 
 def _write(together: Season, folder: Path, pages: Mapping[str, Path]) -> None:

@@ -109,7 +109,7 @@ class Changes:
             ("restitution", restitution, FRACTION), ("friction", friction, FRICTION),
             ("aim_offset", aim_offset, OFFSET),
         ):  # fmt: skip
-            if value is not None:
+            if value is not None or name == "aim_offset":
                 limits.check(f"`{name}`", value)
         amounts: dict[str, Amount | None] = {}
         for name, given, limits in (("speed", speed, SPEED), ("spin", spin, SPIN)):

@@ -13,6 +13,10 @@ LITERATURE = {
 }
 """Value, its standard error or the range, and source of what others measured."""
 
+_ICE = (
+    "stone", "friction", "sd_friction", "turn_rate", "sd_turn_rate", "speed", "spin", "sd_spin",
+)  # fmt: skip
+
 
 def law_table(results: Results) -> pd.DataFrame:
     """Measured restitution and frictions beside those of the literature (the paper's Table 1).
@@ -110,21 +114,21 @@ def ice_table(results: Results) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        ``stone, friction, sd_friction, turn, sd_turn, speed, spin, sd_spin``: `turn` of its path
-        to the left, rad/s, at its mean `speed`, m/s; `spin` as it is first seen to move, rad/s.
+        ``stone, friction, sd_friction, turn_rate, sd_turn_rate, speed, spin, sd_spin``:
+        `turn_rate` of its path to the left, rad/s, at its mean `speed`, m/s; `spin` as it is
+        first seen to move, rad/s.
     """
     rows = [
         {
             "stone": name,
             "friction": stone.friction.value,
             "sd_friction": stone.friction.stderr,
-            "turn": stone.turn_rate.value,
-            "sd_turn": stone.turn_rate.stderr,
+            "turn_rate": stone.turn_rate.value,
+            "sd_turn_rate": stone.turn_rate.stderr,
             "speed": stone.speed,
             "spin": stone.spin.value,
             "sd_spin": stone.spin.stderr,
         }
         for name, stone in results.stones.items()
     ]
-    columns = ["stone", "friction", "sd_friction", "turn", "sd_turn", "speed", "spin", "sd_spin"]
-    return pd.DataFrame(rows, columns=columns)
+    return pd.DataFrame(rows, columns=list(_ICE))

@@ -105,6 +105,11 @@ def test_tables_have_units(sample: curlshot.Run) -> None:
         assert list(table.attrs["units"]) == list(table)
     assert sample.tracks.attrs["units"]["meas_sd_x"] == "m"
     assert sample.hits.attrs["units"]["stderr_t"] == "s"
+    for table in (sample.glides, sample.stones):
+        assert table.attrs["units"]["turn_rate"] == "rad/s" and "turn" not in table
+    for name, table in (("glides", sample.glides), ("stones", sample.stones)):
+        described = re.findall(r"\w+", getattr(type(sample), name).__doc__ or "")
+        assert {column.removeprefix("sd_") for column in table} <= set(described)
     hits = sample.hits
     assert (hits["closing_speed"] > 0.9).all() and hits["first"].tolist() == ["A", "B"]
     first = sample.stones.set_index("stone").loc["A"]
