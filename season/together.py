@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from curlshot.data.files import check_folder, staged
-from curlshot.data.run_folders import find_results, read_runs
+from curlshot.data.files import staged
+from curlshot.data.run_folders import find_results, read_runs, season_folder
 from curlshot.data.version import VERSION
 from curlshot.outcome import Run
 
@@ -88,7 +88,7 @@ def combine(
     Raises
     ------
     curlshot.data.errors.InputError
-        Where there is no run, or `out` cannot be written.
+        Where there is no run, or `out` cannot be written or holds a run itself.
 
     Examples
     --------
@@ -106,7 +106,7 @@ def combine(
     """
     from curlshot.physics.statistics.season import hits_table, pooled, repeated, shots_table
 
-    folder = None if out is None else check_folder(out)
+    folder = None if out is None else season_folder(out)
     if isinstance(runs, Mapping):
         shots = {name: one.results if isinstance(one, Run) else one for name, one in runs.items()}
         places = {n: one.out for n, one in runs.items() if isinstance(one, Run) and one.out}
