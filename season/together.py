@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from curlshot.data.files import staged
+from curlshot.data.messages import as_options
 from curlshot.data.run_folders import find_results, read_runs, season_folder
 from curlshot.data.version import VERSION
 from curlshot.outcome import Run
@@ -130,14 +131,18 @@ def _write(together: Season, folder: Path, pages: Mapping[str, Path]) -> None:
     from curlshot.report.season_page import season_page
     from curlshot.report.template import link
 
+    shots, hits = (
+        table.assign(note=table["note"].map(as_options, na_action="ignore"))
+        for table in (together.shots, together.hits)
+    )
     page = season_page(
         folder.resolve().name,
-        together.shots,
-        together.hits,
+        shots,
+        hits,
         together.means,
         {name: link(path, folder) for name, path in pages.items() if path.exists()},
-        together.left_out,
+        {name: as_options(why) for name, why in together.left_out.items()},
         VERSION,
     )
     with staged(folder) as stage:
-        write_season(stage, together.shots, together.hits, together.means, page)
+        write_season(stage, shots, hits, together.means, page)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -60,3 +61,13 @@ def test_a_season_is_not_written_into_the_folder_of_a_run(tmp_path: Path) -> Non
     (tmp_path / "results.json").write_text("{}", encoding="utf-8")
     with pytest.raises(InputError, match="holds a run itself; name another folder with `out`"):
         combine(tmp_path, tmp_path)
+
+
+def test_the_files_of_a_season_name_options(tmp_path: Path) -> None:
+    run = written(tmp_path / "run")
+    results = replace(find_runs(run)["run"], warnings=("friction: wrong frame rate (`fps`)",))
+    write_results(results, run / "results.json")
+    season = combine(run, tmp_path / "season")
+    assert season.shots["note"].tolist() == ["friction: wrong frame rate (`fps`)"]
+    assert "wrong frame rate (--fps)" in (tmp_path / "season" / "shots.csv").read_text("utf-8")
+    assert "`fps`" not in (tmp_path / "season" / "season.html").read_text("utf-8")
