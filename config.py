@@ -65,13 +65,17 @@ __all__ = [
 # ---------------------------------------------------------------------------------------
 
 
-def _tuple_of(*limits: tuple[Limits, bool]) -> Check:
-    """Return a check of several numbers, each within its limits, or None where that is allowed."""
+def _tuple_of(*limits: tuple[Limits, bool], what: str) -> Check:
+    """Return a check of several numbers, each within its limits, or None where that is allowed.
+
+    `what` names them in the message where their number is wrong.
+    """
 
     def check(name: str, given: object) -> None:
         several = isinstance(given, Sequence) and not isinstance(given, str)
         if not several or len(given) != len(limits):  # type: ignore[arg-type]
-            raise InputError(f"{name} {given!r}: {len(limits)} values, please, in a tuple")
+            shown = f"[{', '.join(map(str, given))}]" if several else repr(given)  # type: ignore[call-overload]
+            raise InputError(f"{name} {shown}: {what}, please")
         for part, (limit, none) in zip(given, limits, strict=True):  # type: ignore[call-overload]
             if not (none and part is None):
                 limit.check(name, part)
@@ -84,11 +88,16 @@ def _by_stone(each: Check, what: str) -> Check:
 
     def check(name: str, given: object) -> None:
         if not isinstance(given, Mapping):
-            raise InputError(f"{name}: by stone, please, as in {name}={{'A': …}}")
+            raise InputError(f"{name}: a value for each stone, please, by its name")
         for stone, value in given.items():
             each(f"{what} of {stone}", value)
 
     return check
+
+
+def _numbers(given: object) -> int:
+    """Return the number of values of a list or tuple; 0 of anything else."""
+    return len(given) if isinstance(given, (list, tuple)) else 0
 
 
 def _instance(what: str, *kinds: type) -> Check:
@@ -102,7 +111,7 @@ def _instance(what: str, *kinds: type) -> Check:
 
 
 def _stick(name: str, given: object) -> None:
-    _tuple_of(*[(ANY, False)] * 5)(name, given)
+    _tuple_of(*[(ANY, False)] * 5, what="5 numbers")(name, given)
     if not has_length(given):  # type: ignore[arg-type]
         raise InputError(f"{name} {given}: has no length")
 
@@ -121,7 +130,7 @@ def _one_of(known: Iterable[str]) -> Check:
 NONNEGATIVE = Limits(0.0, sys.float_info.max, "a number, 0 or more").check
 LENGTH = Limits(math.ulp(0.0), 100.0, "a positive number, at most 100").check
 _TEXT, _PATH = _instance("a text", str), _instance("a path", str, os.PathLike)
-_YES_NO = _instance("True or False", bool)
+_YES_NO = _instance("true or false", bool)
 
 
 def setting(default: Any, meaning: str, check: Check, unit: str = "", option: str = "") -> Any:
@@ -156,7 +165,7 @@ class VideoConfig(_Section):
     fps : float, optional
         Rate of pictures, or of a table without times, 1/s.
     frames : (int, int or None), optional
-        First and last frame of a clip to use, both included.
+        First and last frame of a clip to use, both included; to its end without the last.
     clip : bool
         Whether the clip of a Tracker project is measured, not what is marked in it.
     tab : str, optional
@@ -175,12 +184,17 @@ class VideoConfig(_Section):
     frames: tuple[int, int | None] | None = setting(
         None,
         "first and last frame of a clip to use, both included",
-        _tuple_of((FRAME, False), (FRAME, True)),
+        _tuple_of((FRAME, False), (FRAME, True), what="1 or 2 numbers"),
     )
     clip: bool = setting(
         False, "measure the clip of a Tracker project, not the marks in it", _YES_NO
     )
     tab: str | None = setting(None, "tab of a Tracker project that has several", _TEXT)
+
+    def __post_init__(self) -> None:
+        if _numbers(self.frames) == 1:
+            object.__setattr__(self, "frames", (*self.frames, None))  # type: ignore[misc]
+        super().__post_init__()
 
 
 @dataclass(frozen=True)
@@ -193,7 +207,7 @@ class CameraConfig(_Section):
         Calibration stick: two pixels and their distance, for a still camera and no house.
     house : (frame, xc, yc, x1, y1, x2, y2), optional
         The tee and two points on the outer edge of the 12-ft ring, px, in one frame (None: the
-        first), for a house that is not found by itself.
+        first, as without it), for a house that is not found by itself.
     camera : Path, optional
         Table as ``camera.csv`` with a known camera: one row, or one per frame; or a Tracker
         project, whose coordinate system is the camera. With a radius other than a curling
@@ -220,7 +234,7 @@ class CameraConfig(_Section):
     house: tuple[int | None, float, float, float, float, float, float] | None = setting(
         None,
         "frame, tee and two points on the outer edge of the 12-ft ring",
-        _tuple_of((FRAME, True), *[(ANY, False)] * 6),
+        _tuple_of((FRAME, True), *[(ANY, False)] * 6, what="6 or 7 numbers"),
         "px",
     )
     camera: Path | None = setting(
@@ -231,6 +245,8 @@ class CameraConfig(_Section):
     )
 
     def __post_init__(self) -> None:
+        if _numbers(self.house) == 6:
+            object.__setattr__(self, "house", (None, *self.house))  # type: ignore[misc]
         super().__post_init__()
         if self.camera is not None:
             object.__setattr__(self, "camera", Path(self.camera))
@@ -550,27 +566,35 @@ class Config:
     def to_toml(self) -> str:
         """Return the text of a TOML file with all settings, their units and meanings.
 
-        Settings without a value stand in comments.
+        Settings that have their default value, or none, stand in comments, so that a file keeps
+        only what was changed.
 
         Examples
         --------
         >>> for line in Config().replace(fps=25.0).to_toml().splitlines()[:3]:
         ...     print(line)
         [video]
-        fps = 25.0                # 1/s: frame rate of pictures, or of a table without times
-        # frames =                # first and last frame of a clip to use, both included
+        fps = 25.0                       # 1/s: frame rate of pictures, or of a table without times
+        # frames =                       # first and last frame of a clip to use, both included
         """
         lines: list[str] = []
         last = None
+        values, usual = self.values(), Config().values()
         for section, item in self.settings():
             if section != last:
                 lines += [*([""] if lines else []), f"[{section}]"]
                 last = section
-            value = _toml(getattr(getattr(self, section), item.name))
-            key = f"# {item.name} =" if value is None else f"{item.name} = {value}"
+            value = values[item.name]
+            key = f"{item.name} = {_toml(value) or ''}".rstrip()
+            if value == usual[item.name]:
+                key = f"# {key}"
             unit, meaning = item.metadata["unit"], item.metadata["meaning"]
-            lines.append(f"{key:<25s} # {unit + ': ' if unit else ''}{meaning}")
+            lines.append(f"{key:<{_KEY_WIDTH}} # {unit + ': ' if unit else ''}{meaning}")
         return "\n".join([*lines, ""])
+
+
+_KEY_WIDTH = 32
+"""Width of a key with its default value in a file."""
 
 
 def with_settings(config: object, settings: Mapping[str, Any]) -> Config:
@@ -598,10 +622,6 @@ def _from_toml(item: _Field[Any], value: Any, folder: Path) -> Any:
         return folder / value
     if item.name == "angles" and isinstance(value, dict):
         return {k: folder / v if isinstance(v, str) else v for k, v in value.items()}
-    if item.name == "house" and isinstance(value, list) and len(value) == 6:
-        return (None, *value)
-    if item.name == "frames" and isinstance(value, list) and len(value) == 1:
-        return (*value, None)
     return tuple(value) if isinstance(value, list) else value
 
 

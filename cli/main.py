@@ -20,6 +20,7 @@ from curlshot.data.garbage import collect_seldom
 from curlshot.data.importers import refuse_clips
 from curlshot.data.inputs import IMAGE_SUFFIXES, TABLE_SUFFIXES, find_inputs, sample_clip
 from curlshot.data.messages import as_options
+from curlshot.data.run_folders import season_folder
 from curlshot.data.version import VERSION
 from curlshot.pipeline import analyse, convert, measure, run
 
@@ -61,7 +62,7 @@ def _run_season(arguments: argparse.Namespace, clips: Sequence[Path], bars: Bars
     from curlshot.season.batch import run_each
     from curlshot.season.parallel import processors
 
-    folder = Path(arguments.out or "season")
+    folder = season_folder(arguments.out or "season")
     jobs = arguments.jobs or processors()
     done, failed = run_each(clips, folder, config_of(arguments), bars, jobs)
     if not done:

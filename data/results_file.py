@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
 from curlshot.data.errors import InputError
 from curlshot.data.files import write_text
-from curlshot.data.messages import as_options
+from curlshot.data.messages import as_options, as_settings
 from curlshot.data.results import (
     Estimate,
     Friction,
@@ -35,6 +35,9 @@ from curlshot.data.results import (
 SCHEMA = 2
 """Version of the file's form."""
 
+MESSAGES = ("warnings", "note", "note_stone_friction")
+"""Keys of messages; the file spells the settings in them as options of the command."""
+
 RENAMED_TOP = {
     "laws": "joint_estimate",
     "law_choice": "model_selection",
@@ -57,7 +60,7 @@ _Made = TypeVar("_Made")
 
 def results_json(results: Results) -> str:
     """Return the text of ``results.json``: strict JSON, values that are not finite as null."""
-    content = _plain({"schema": SCHEMA, **asdict(results)})
+    content = _respelled(_plain({"schema": SCHEMA, **asdict(results)}), as_options)
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
 
 
@@ -81,6 +84,7 @@ def read_results(path: Path) -> Results:
             raise InputError(f"{path}: results of another version; run again")
         if schema == 1:
             raw = _from_version_1(raw)
+        raw = _respelled(raw, as_settings)
         return Results(
             input=_made(Input, {**raw["input"], "files": tuple(raw["input"]["files"])}),
             restitution=_made(Estimate, raw["restitution"]),
@@ -114,6 +118,15 @@ def read_results(path: Path) -> Results:
         raise InputError(f"{path}: {error.strerror}") from None
     except (ValueError, KeyError, TypeError, AttributeError):
         raise InputError(f"{path}: not a results.json of this program") from None
+
+
+def _respelled(value: Any, spell: Callable[[str], str], message: bool = False) -> Any:
+    """Return JSON values with the settings spelled in another way in all messages of them."""
+    if isinstance(value, dict):
+        return {key: _respelled(item, spell, key in MESSAGES) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_respelled(item, spell, message) for item in value]
+    return spell(value) if message and isinstance(value, str) else value
 
 
 def _from_version_1(raw: Mapping[str, Any]) -> dict[str, Any]:
@@ -201,9 +214,7 @@ def _plain(value: Any) -> Any:
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
-    if isinstance(value, str):
-        return as_options(value)
-    if isinstance(value, bool) or value is None or isinstance(value, int):
+    if value is None or isinstance(value, (str, bool, int)):
         return value
     number = float(value)
     return number if math.isfinite(number) else None

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from curlshot.data.errors import InputError
+from curlshot.data.files import check_folder
 from curlshot.data.inputs import in_order, matching, named
 from curlshot.data.text import printable
 
@@ -58,6 +59,14 @@ def find_results(names: str | Path | Sequence[str | Path]) -> dict[str, Path]:
     unique = dict.fromkeys(path.resolve() for path in found)
     folders = apart([path.parent.with_name(f"{path.parent.name}.run") for path in unique])
     return dict(zip(folders, unique, strict=True))
+
+
+def season_folder(out: str | Path) -> Path:
+    """Return the folder for what many shots show; refuse one that holds a run itself."""
+    folder = check_folder(out)
+    if (folder / "results.json").exists():
+        raise InputError(f"{folder}: holds a run itself; name another folder with `out`")
+    return folder
 
 
 def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:

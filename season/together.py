@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from curlshot.data.arguments import check_type, checked_path, checked_paths
-from curlshot.data.files import check_folder, staged
+from curlshot.data.files import staged
+from curlshot.data.messages import as_options
 from curlshot.data.results import Results
-from curlshot.data.run_folders import apart, find_results, read_runs
+from curlshot.data.run_folders import apart, find_results, read_runs, season_folder
 from curlshot.data.version import VERSION
 from curlshot.outcome import Run
 
@@ -90,7 +91,7 @@ def combine(
     Raises
     ------
     curlshot.data.errors.InputError
-        Where there is no run, or `out` cannot be written.
+        Where there is no run, or `out` cannot be written or holds a run itself.
 
     Examples
     --------
@@ -108,7 +109,7 @@ def combine(
     """
     from curlshot.physics.statistics.season import hits_table, pooled, repeated, shots_table
 
-    folder = None if out is None else check_folder(checked_path("out", out))
+    folder = None if out is None else season_folder(checked_path("out", out))
     if isinstance(runs, Run):
         runs = [runs]
     if isinstance(runs, Sequence) and runs and all(isinstance(one, Run) for one in runs):
@@ -149,14 +150,18 @@ def _write(together: Season, folder: Path, pages: Mapping[str, Path]) -> None:
     from curlshot.report.season_page import season_page
     from curlshot.report.template import link
 
+    shots, hits = (
+        table.assign(note=table["note"].map(as_options, na_action="ignore"))
+        for table in (together.shots, together.hits)
+    )
     page = season_page(
         folder.resolve().name,
-        together.shots,
-        together.hits,
+        shots,
+        hits,
         together.means,
         {name: link(path, folder) for name, path in pages.items() if path.exists()},
-        together.left_out,
+        {name: as_options(why) for name, why in together.left_out.items()},
         VERSION,
     )
     with staged(folder) as stage:
-        write_season(stage, together.shots, together.hits, together.means, page)
+        write_season(stage, shots, hits, together.means, page)

@@ -16,6 +16,7 @@ from curlshot.data.results import (
     Glide,
     JointEstimate,
     Law,
+    NotedEstimate,
     SimulationScore,
     TrackResidual,
 )
@@ -26,6 +27,23 @@ from curlshot.tests.helpers.data.results_file import RESULTS, strict
 def test_round_trip(tmp_path: Path) -> None:
     write_results(RESULTS, tmp_path / "results.json")
     assert read_results(tmp_path / "results.json") == RESULTS
+
+
+def test_messages_name_options_in_the_file_and_settings_in_python(tmp_path: Path) -> None:
+    warned = replace(
+        RESULTS,
+        input=replace(RESULTS.input, files=("a --fps `fps`.mp4",)),
+        curl=NotedEstimate(note="see `check`"),
+        warnings=("wrong frame rate (`fps`)",),
+    )
+    write_results(warned, tmp_path / "results.json")
+    raw = json.loads((tmp_path / "results.json").read_text("utf-8"))
+    assert raw["warnings"] == ["wrong frame rate (--fps)"]
+    assert (raw["curl"]["note"], raw["input"]["files"]) == (
+        "see curlshot check",
+        ["a --fps `fps`.mp4"],
+    )
+    assert read_results(tmp_path / "results.json") == warned
 
 
 VERSION_1 = """{

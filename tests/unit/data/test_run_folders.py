@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,8 @@ import pytest
 from curlshot.data.errors import InputError
 from curlshot.data.results import Estimate, Friction, Input, Results
 from curlshot.data.results_file import write_results
-from curlshot.data.run_folders import apart, find_runs
+from curlshot.data.run_folders import apart, find_runs, season_folder
+from curlshot.season.together import combine
 
 
 def written(folder: Path, radius: float = 0.1455) -> Path:
@@ -52,3 +54,20 @@ def test_runs_of_stones_and_of_pucks_are_no_season(tmp_path: Path) -> None:
         InputError, match=r"^pucks: its discs have a radius of 0.0465 m, .*0.1455 m"
     ):
         find_runs(runs)
+
+
+def test_a_season_is_not_written_into_the_folder_of_a_run(tmp_path: Path) -> None:
+    assert season_folder(tmp_path) == tmp_path
+    (tmp_path / "results.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(InputError, match="holds a run itself; name another folder with `out`"):
+        combine(tmp_path, tmp_path)
+
+
+def test_the_files_of_a_season_name_options(tmp_path: Path) -> None:
+    run = written(tmp_path / "run")
+    results = replace(find_runs(run)["run"], warnings=("friction: wrong frame rate (`fps`)",))
+    write_results(results, run / "results.json")
+    season = combine(run, tmp_path / "season")
+    assert season.shots["note"].tolist() == ["friction: wrong frame rate (`fps`)"]
+    assert "wrong frame rate (--fps)" in (tmp_path / "season" / "shots.csv").read_text("utf-8")
+    assert "`fps`" not in (tmp_path / "season" / "season.html").read_text("utf-8")
