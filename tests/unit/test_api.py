@@ -151,7 +151,7 @@ def test_runs_are_combined_without_names(still: curlshot.Run) -> None:
         assert curlshot.combine(given).shots["shot"].tolist() == ["still"]
     season = curlshot.combine([still, unwritten])
     assert len(season.shots) + len(season.left_out) == 2
-    with pytest.raises(curlshot.InputError, match="^`runs`: .* is not a path"):
+    with pytest.raises(curlshot.InputError, match=r"^`runs`: .* is not a path"):
         curlshot.combine([still, still.out])  # type: ignore[list-item]
 
 
@@ -161,7 +161,7 @@ def test_runs_and_seasons_compare_by_identity(still: curlshot.Run) -> None:
     assert again == again and again != still
     assert season == season and season != curlshot.combine(still)
     assert still.measurement == still.measurement and len({still, again, season}) == 3
-    with pytest.raises(curlshot.InputError, match="^`folder`: None is not a path"):
+    with pytest.raises(curlshot.InputError, match=r"^`folder`: None is not a path"):
         still.report(None)  # type: ignore[arg-type]
 
 

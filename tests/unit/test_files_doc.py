@@ -21,8 +21,8 @@ PAGE = (Path(__file__).resolve().parents[2] / "docs" / "files.md").read_text("ut
 OTHERS = {
     "schema", "model", "sample", "hits", "start", "shots", "input", "thrown", "changes", "samples",
     "throw_sd", "direction", "warnings", "size", "inertia", "loss", "local", "shot_fit",
-    "finite-differences", "constant", "fit", "sd_", "--samples", "--fps", "curlshot.load", "#rrggbb",
-    "curlshot simulate", "SHOT.toml",
+    "finite-differences", "constant", "fit", "sd_", "--samples", "--fps", "curlshot.load",
+    "#rrggbb", "curlshot simulate", "SHOT.toml",
 }  # fmt: skip
 """What else the page names."""
 
