@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -151,6 +152,18 @@ def test_what_is_no_run_is_named_in_one_line(old: Path, tmp_path: Path) -> None:
         curlshot.load(old)
     with pytest.raises(curlshot.InputError, match="no such folder"):
         curlshot.load(tmp_path / "none")
+
+
+def test_a_run_without_tracks_draws_what_needs_none(sample: curlshot.Run, tmp_path: Path) -> None:
+    assert sample.out is not None
+    folder = shutil.copytree(sample.out, tmp_path / "run")
+    (folder / "tracks.csv").unlink()
+    run = curlshot.load(folder)
+    assert len(run.plot_hit()) == 2 and run.plot_posterior()[0].has_data()
+    needs = (run.plot, run.plot_motion, run.plot_spin, run.plot_comparison, run.plot_residuals)
+    for draw in (*needs, lambda: curlshot.simulate(run)):
+        with pytest.raises(curlshot.InputError, match=r"no tracks\.csv in it"):
+            draw()
 
 
 FIGURES = {

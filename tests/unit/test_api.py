@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 import types
@@ -136,13 +137,21 @@ def test_a_function_names_the_argument_of_a_wrong_type(
         getattr(curlshot, function)(**arguments)
 
 
-@pytest.fixture
-def still(tmp_path: Path, simulated: curlshot.SimulatedShot) -> curlshot.Run:
+@pytest.fixture(scope="module")
+def still(tmp_path_factory: pytest.TempPathFactory) -> curlshot.Run:
     """A run with files, of stones that lie still."""
+    folder = tmp_path_factory.mktemp("runs")
     stones = (replace(STONES[0], vy=0.0), STONES[1])
     table = curlshot.simulate(curlshot.Shot(stones)).sample([0.0, 0.1, 0.2, 0.3])
-    table.to_csv(tmp_path / "still.csv")
-    return curlshot.run(tmp_path / "still.csv", out=tmp_path / "still")
+    table.to_csv(folder / "still.csv")
+    return curlshot.run(folder / "still.csv", out=folder / "still")
+
+
+@pytest.fixture
+def copied(still: curlshot.Run, tmp_path: Path) -> Path:
+    """The folder of a run, to be changed."""
+    assert still.out is not None
+    return shutil.copytree(still.out, tmp_path / "copied")
 
 
 def test_runs_are_combined_without_names(still: curlshot.Run) -> None:
@@ -151,7 +160,7 @@ def test_runs_are_combined_without_names(still: curlshot.Run) -> None:
         assert curlshot.combine(given).shots["shot"].tolist() == ["still"]
     season = curlshot.combine([still, unwritten])
     assert len(season.shots) + len(season.left_out) == 2
-    with pytest.raises(curlshot.InputError, match=r"^`runs`: .* is not a path"):
+    with pytest.raises(curlshot.InputError, match="`runs`: "):
         curlshot.combine([still, still.out])  # type: ignore[list-item]
 
 
@@ -161,24 +170,23 @@ def test_runs_and_seasons_compare_by_identity(still: curlshot.Run) -> None:
     assert again == again and again != still
     assert season == season and season != curlshot.combine(still)
     assert still.measurement == still.measurement and len({still, again, season}) == 3
-    with pytest.raises(curlshot.InputError, match=r"^`folder`: None is not a path"):
+    with pytest.raises(curlshot.InputError, match="`folder`: None is not a path"):
         still.report(None)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", ["camera.csv", "posterior.csv"])
 @pytest.mark.parametrize("text", ["", "one,two\n1,2\n", "\0\xff"])
-def test_a_broken_file_of_a_run_is_refused(still: curlshot.Run, name: str, text: str) -> None:
-    assert still.out is not None
-    (still.out / name).write_text(text, encoding="latin-1")
+def test_a_broken_file_of_a_run_is_refused(copied: Path, name: str, text: str) -> None:
+    (copied / name).write_text(text, encoding="latin-1")
     with pytest.raises(curlshot.InputError, match=name):
-        curlshot.load(still.out)
+        curlshot.load(copied)
 
 
-def test_a_file_of_a_run_holds_numbers(still: curlshot.Run) -> None:
-    assert still.out is not None
-    path = still.out / "posterior.csv"
+def test_a_file_of_a_run_holds_numbers(copied: Path) -> None:
+    path = copied / "posterior.csv"
     path.write_text("sample,restitution,friction,stone_friction\n0,0.8,0.01,\n", "utf-8")
-    assert curlshot.load(still.out).plot_posterior()[0].has_data()
+    table = curlshot.load(copied).posterior
+    assert table is not None and table["friction"].tolist() == [0.01]
     path.write_text("sample,restitution,friction,stone_friction\n0,high,0.01,\n", "utf-8")
     with pytest.raises(curlshot.InputError, match="column restitution is not all numbers"):
-        curlshot.load(still.out)
+        curlshot.load(copied)
