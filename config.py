@@ -132,9 +132,9 @@ _TEXT, _PATH = _instance("a text", str), _instance("a path", str, os.PathLike)
 _YES_NO = _instance("true or false", bool)
 
 
-def setting(default: Any, meaning: str, check: Check, unit: str = "", option: str = "") -> Any:
-    """Return a field with its meaning, unit and check; `option` where `--name` is not it."""
-    about = {"meaning": meaning, "unit": unit, "check": check, "option": option}
+def setting(default: Any, meaning: str, check: Check, unit: str = "") -> Any:
+    """Return a field with its meaning, unit and check."""
+    about = {"meaning": meaning, "unit": unit, "check": check}
     if default == {}:
         return field(default_factory=dict, metadata=about)
     return field(default=default, metadata=about)
@@ -280,7 +280,7 @@ class StonesConfig(_Section):
     radius: float = setting(STONE.radius, "radius of the discs", RADIUS.check, "m")
     masses: Mapping[str, float] = setting(
         {}, "masses by stone, where they are not all equal", _by_stone(POSITIVE.check, "mass"),
-        "any", "--mass",
+        "any",
     )  # fmt: skip
 
 
@@ -426,7 +426,7 @@ class ReportConfig(_Section):
     True
     """
 
-    overlay: bool = setting(True, "write the annotated clip", _YES_NO, option="--no-overlay")
+    overlay: bool = setting(True, "write the annotated clip", _YES_NO)
     units: str = setting("m", "unit of the coach's tables, m or ft", _one_of(UNITS))
 
 
@@ -443,6 +443,9 @@ class Config:
     physics : PhysicsConfig
     report : ReportConfig
     search : SearchConfig
+    preset : frozenset of str
+        Names of the settings that a file gave. Where they do not fit an input they are ignored;
+        others are refused. Equality leaves them out.
 
     Examples
     --------
@@ -461,6 +464,7 @@ class Config:
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     report: ReportConfig = field(default_factory=ReportConfig)
     search: SearchConfig = field(default_factory=SearchConfig)
+    preset: frozenset[str] = field(default=frozenset(), compare=False, repr=False)
 
     def replace(self, **settings: Any) -> Self:
         """Return a copy with other values of some settings, each by its own name.
@@ -491,12 +495,14 @@ class Config:
                 raise TypeError(f"no setting {name!r}{_nearest(name, sections)}")
             changed.setdefault(sections[name], {})[name] = value
         parts = {name: replace(getattr(self, name), **new) for name, new in changed.items()}
-        return replace(self, **parts)
+        return replace(self, **parts, preset=self.preset.difference(settings))
 
     @classmethod
     def settings(cls) -> Iterator[tuple[str, _Field[Any]]]:
         """Yield the name of the section and the field of every setting, in order."""
         for section in fields(cls):
+            if section.name == "preset":
+                continue
             for item in fields(section.default_factory):  # type: ignore[arg-type]
                 yield section.name, item
 
@@ -547,7 +553,7 @@ class Config:
                     raise InputError(f"{source}: no key {name!r} in [{section}]{near}")
                 given[name] = _from_toml(known[section][name], value, folder)
         try:
-            return cls().replace(**given)
+            return replace(cls().replace(**given), preset=frozenset(given))
         except InputError as error:
             raise InputError(f"{source}: {error}") from None
 
@@ -622,7 +628,7 @@ def _toml(value: Any) -> str | None:
 
 
 def refuse_table_settings(path: Path, config: Config) -> None:
-    """Refuse settings of tables where a clip is measured.
+    """Refuse settings of tables where a clip is measured; those of a preset are ignored.
 
     Tabs and units of length of a project count there too, be it the clip's own or the camera's.
     """
@@ -633,17 +639,29 @@ def refuse_table_settings(path: Path, config: Config) -> None:
     sources = [path] if camera is None else [path, camera]
     if not any(source.suffix.lower() in PROJECT_SUFFIXES for source in sources):
         given |= {"tab": config.video.tab, "length_unit": tables.length_unit}
-    names = ", ".join(f"`{name}`" for name, value in given.items() if value)
+    names = _said(given, config)
     if names:
         raise InputError(f"{path}: only tables take {names}; a clip is measured here")
 
 
 def refuse_clip_settings(path: Path, config: Config) -> None:
-    """Refuse settings of a clip where tracks are read."""
+    """Refuse settings of a clip where tracks are read; those of a preset are ignored."""
     given = {name: getattr(config.camera, name) for name in
              ("stick", "house", "camera", "camera_height")}  # fmt: skip
     given["frames"] = config.video.frames
-    names = ", ".join(f"`{name}`" for name, value in given.items() if value)
+    names = _said(given, config)
     if names:
         clip = "; add `clip` to measure its clip" if path.suffix.lower() in PROJECT_SUFFIXES else ""
         raise InputError(f"{path}: only clips take {names}; tracks are read here{clip}")
+
+
+def measures_clip(files: Sequence[Path], config: Config) -> bool:
+    """Return whether `clip` holds for these files; of a preset it does for projects alone."""
+    projects = any(file.suffix.lower() in PROJECT_SUFFIXES for file in files)
+    return config.video.clip and (projects or "clip" not in config.preset)
+
+
+def _said(given: Mapping[str, object], config: Config) -> str:
+    """Return the names, in backticks, of settings that have a value and are not of a preset."""
+    names = (name for name, value in given.items() if value and name not in config.preset)
+    return ", ".join(f"`{name}`" for name in names)
