@@ -47,7 +47,11 @@ from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS
 Check = Callable[[str, object], None]
 """Raises `InputError` where a value of that name makes no sense."""
 
+CONFIG_FILE = "config.toml"
+"""File of the changed settings of a run, in its folder."""
+
 __all__ = [
+    "CONFIG_FILE",
     "CameraConfig",
     "Config",
     "PhysicsConfig",
@@ -512,6 +516,25 @@ class Config:
             item.name: getattr(getattr(self, room), item.name) for room, item in self.settings()
         }
 
+    def changed(self) -> dict[str, Any]:
+        """Return the settings that do not have their default value.
+
+        Examples
+        --------
+        >>> Config().replace(fps=25.0, samples=0).changed()
+        {'fps': 25.0}
+        """
+        usual = Config().values()
+        return {name: value for name, value in self.values().items() if value != usual[name]}
+
+    def absolute(self) -> Self:
+        """Return a copy whose paths do not depend on the current folder."""
+        camera, angles = self.camera.camera, self.tables.angles
+        return self.replace(
+            camera=None if camera is None else camera.resolve(),
+            angles={stone: path.resolve() for stone, path in angles.items()},
+        )
+
     @classmethod
     def from_file(cls, path: str | Path) -> Self:
         """Read a TOML file; paths in it are relative to its folder.
@@ -573,14 +596,14 @@ class Config:
         """
         lines: list[str] = []
         last = None
-        values, usual = self.values(), Config().values()
+        values, changed = self.values(), self.changed()
         for section, item in self.settings():
             if section != last:
                 lines += [*([""] if lines else []), f"[{section}]"]
                 last = section
             value = values[item.name]
             key = f"{item.name} = {_toml(value) or ''}".rstrip()
-            if value == usual[item.name]:
+            if item.name not in changed:
                 key = f"# {key}"
             unit, meaning = item.metadata["unit"], item.metadata["meaning"]
             lines.append(f"{key:<{_KEY_WIDTH}} # {unit + ': ' if unit else ''}{meaning}")

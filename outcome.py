@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from curlshot.config import Config
+from curlshot.config import CONFIG_FILE, Config
 from curlshot.data.coach_units import UNITS, Unit
 from curlshot.data.errors import InputError
 from curlshot.data.estimates import Estimate, Friction, NotedEstimate
@@ -54,7 +54,7 @@ class Run:
     measurement : Measurement or None
         What was measured before any physics; None for a run that was loaded.
     config : Config
-        The settings of the run.
+        The settings of the run; of a loaded one from its ``config.toml``.
 
     Examples
     --------
@@ -436,7 +436,10 @@ def load(folder: str | Path) -> Run:
         house=HOUSE if at_tee else None,
         posterior=pd.read_csv(there["posterior.csv"]) if "posterior.csv" in there else None,
         ensemble=read_ensemble(there["ensemble.json"]) if "ensemble.json" in there else None,
+        config=Config.from_file(there[CONFIG_FILE]) if CONFIG_FILE in there else Config(),
     )
 
 
-_OPTIONAL = ("tracks.csv", "camera.csv", "simulation.csv", "posterior.csv", "ensemble.json")
+_OPTIONAL = (
+    "tracks.csv", "camera.csv", "simulation.csv", "posterior.csv", "ensemble.json", CONFIG_FILE,
+)  # fmt: skip
