@@ -48,7 +48,11 @@ from curlshot.data.units import ANGLE_UNITS, LENGTH_UNITS
 Check = Callable[[str, object], None]
 """Raises `InputError` where a value of that name makes no sense."""
 
+CONFIG_FILE = "config.toml"
+"""File of the changed settings of a run, in its folder."""
+
 __all__ = [
+    "CONFIG_FILE",
     "CameraConfig",
     "Config",
     "PhysicsConfig",
@@ -133,9 +137,9 @@ _TEXT, _PATH = _instance("a text", str), _instance("a path", str, os.PathLike)
 _YES_NO = _instance("true or false", bool)
 
 
-def setting(default: Any, meaning: str, check: Check, unit: str = "", option: str = "") -> Any:
-    """Return a field with its meaning, unit and check; `option` where `--name` is not it."""
-    about = {"meaning": meaning, "unit": unit, "check": check, "option": option}
+def setting(default: Any, meaning: str, check: Check, unit: str = "") -> Any:
+    """Return a field with its meaning, unit and check."""
+    about = {"meaning": meaning, "unit": unit, "check": check}
     if default == {}:
         return field(default_factory=dict, metadata=about)
     return field(default=default, metadata=about)
@@ -281,7 +285,7 @@ class StonesConfig(_Section):
     radius: float = setting(STONE.radius, "radius of the discs", RADIUS.check, "m")
     masses: Mapping[str, float] = setting(
         {}, "masses by stone, where they are not all equal", _by_stone(POSITIVE.check, "mass"),
-        "any", "--mass",
+        "any",
     )  # fmt: skip
 
 
@@ -433,7 +437,7 @@ class ReportConfig(_Section):
     True
     """
 
-    overlay: bool = setting(True, "write the annotated clip", _YES_NO, option="--no-overlay")
+    overlay: bool = setting(True, "write the annotated clip", _YES_NO)
     units: str = setting("m", "unit of the coach's tables, m or ft", _one_of(UNITS))
 
 
@@ -450,6 +454,9 @@ class Config:
     physics : PhysicsConfig
     report : ReportConfig
     search : SearchConfig
+    preset : frozenset of str
+        Names of the settings that a file gave. Where they do not fit an input they are ignored;
+        others are refused. Equality leaves them out.
 
     Examples
     --------
@@ -468,6 +475,7 @@ class Config:
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     report: ReportConfig = field(default_factory=ReportConfig)
     search: SearchConfig = field(default_factory=SearchConfig)
+    preset: frozenset[str] = field(default=frozenset(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         for item in fields(self):
@@ -503,12 +511,14 @@ class Config:
                 raise TypeError(f"no setting {name!r}{_nearest(name, sections)}")
             changed.setdefault(sections[name], {})[name] = value
         parts = {name: replace(getattr(self, name), **new) for name, new in changed.items()}
-        return replace(self, **parts)
+        return replace(self, **parts, preset=self.preset.difference(settings))
 
     @classmethod
     def settings(cls) -> Iterator[tuple[str, _Field[Any]]]:
         """Yield the name of the section and the field of every setting, in order."""
         for section in fields(cls):
+            if section.name == "preset":
+                continue
             for item in fields(section.default_factory):  # type: ignore[arg-type]
                 yield section.name, item
 
@@ -517,6 +527,25 @@ class Config:
         return {
             item.name: getattr(getattr(self, room), item.name) for room, item in self.settings()
         }
+
+    def changed(self) -> dict[str, Any]:
+        """Return the settings that do not have their default value.
+
+        Examples
+        --------
+        >>> Config().replace(fps=25.0, samples=0).changed()
+        {'fps': 25.0}
+        """
+        usual = Config().values()
+        return {name: value for name, value in self.values().items() if value != usual[name]}
+
+    def absolute(self) -> Self:
+        """Return a copy whose paths do not depend on the current folder."""
+        camera, angles = self.camera.camera, self.tables.angles
+        return self.replace(
+            camera=None if camera is None else camera.resolve(),
+            angles={stone: path.resolve() for stone, path in angles.items()},
+        )
 
     @classmethod
     def from_file(cls, path: str | Path) -> Self:
@@ -559,7 +588,7 @@ class Config:
                     raise InputError(f"{source}: no key {name!r} in [{section}]{near}")
                 given[name] = _from_toml(known[section][name], value, folder)
         try:
-            return cls().replace(**given)
+            return replace(cls().replace(**given), preset=frozenset(given))
         except InputError as error:
             raise InputError(f"{source}: {error}") from None
 
@@ -579,14 +608,14 @@ class Config:
         """
         lines: list[str] = []
         last = None
-        values, usual = self.values(), Config().values()
+        values, changed = self.values(), self.changed()
         for section, item in self.settings():
             if section != last:
                 lines += [*([""] if lines else []), f"[{section}]"]
                 last = section
             value = values[item.name]
             key = f"{item.name} = {_toml(value) or ''}".rstrip()
-            if value == usual[item.name]:
+            if item.name not in changed:
                 key = f"# {key}"
             unit, meaning = item.metadata["unit"], item.metadata["meaning"]
             lines.append(f"{key:<{_KEY_WIDTH}} # {unit + ': ' if unit else ''}{meaning}")
@@ -647,7 +676,7 @@ def _toml(value: Any) -> str | None:
 
 
 def refuse_table_settings(path: Path, config: Config) -> None:
-    """Refuse settings of tables where a clip is measured.
+    """Refuse settings of tables where a clip is measured; those of a preset are ignored.
 
     Tabs and units of length of a project count there too, be it the clip's own or the camera's.
     """
@@ -658,17 +687,29 @@ def refuse_table_settings(path: Path, config: Config) -> None:
     sources = [path] if camera is None else [path, camera]
     if not any(source.suffix.lower() in PROJECT_SUFFIXES for source in sources):
         given |= {"tab": config.video.tab, "length_unit": tables.length_unit}
-    names = ", ".join(f"`{name}`" for name, value in given.items() if value)
+    names = _said(given, config)
     if names:
         raise InputError(f"{path}: only tables take {names}; a clip is measured here")
 
 
 def refuse_clip_settings(path: Path, config: Config) -> None:
-    """Refuse settings of a clip where tracks are read."""
+    """Refuse settings of a clip where tracks are read; those of a preset are ignored."""
     given = {name: getattr(config.camera, name) for name in
              ("stick", "house", "camera", "camera_height")}  # fmt: skip
     given["frames"] = config.video.frames
-    names = ", ".join(f"`{name}`" for name, value in given.items() if value)
+    names = _said(given, config)
     if names:
         clip = "; add `clip` to measure its clip" if path.suffix.lower() in PROJECT_SUFFIXES else ""
         raise InputError(f"{path}: only clips take {names}; tracks are read here{clip}")
+
+
+def measures_clip(files: Sequence[Path], config: Config) -> bool:
+    """Return whether `clip` holds for these files; of a preset it does for projects alone."""
+    projects = any(file.suffix.lower() in PROJECT_SUFFIXES for file in files)
+    return config.video.clip and (projects or "clip" not in config.preset)
+
+
+def _said(given: Mapping[str, object], config: Config) -> str:
+    """Return the names, in backticks, of settings that have a value and are not of a preset."""
+    names = (name for name, value in given.items() if value and name not in config.preset)
+    return ", ".join(f"`{name}`" for name in names)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from curlshot.config import Config
+from curlshot.config import CONFIG_FILE, Config
 from curlshot.data.arguments import checked_path
 from curlshot.data.coach_units import UNITS, Unit
 from curlshot.data.errors import InputError
@@ -55,7 +55,7 @@ class Run:
     measurement : Measurement or None
         What was measured before any physics; None for a run that was loaded.
     config : Config
-        The settings of the run.
+        The settings of the run; of a loaded one from its ``config.toml``.
 
     Examples
     --------
@@ -452,10 +452,13 @@ def load(folder: str | Path) -> Run:
         if "posterior.csv" in there
         else None,
         ensemble=read_ensemble(there["ensemble.json"]) if "ensemble.json" in there else None,
+        config=Config.from_file(there[CONFIG_FILE]) if CONFIG_FILE in there else Config(),
     )
 
 
-_OPTIONAL = ("tracks.csv", "camera.csv", "simulation.csv", "posterior.csv", "ensemble.json")
+_OPTIONAL = (
+    "tracks.csv", "camera.csv", "simulation.csv", "posterior.csv", "ensemble.json", CONFIG_FILE,
+)  # fmt: skip
 
 _CAMERA = ("frame", "t", *(f"h{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)))
 _POSTERIOR = ("sample", "restitution", "friction", "stone_friction")

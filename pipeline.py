@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from curlshot.config import Config, refuse_clip_settings, with_settings
+from curlshot.config import Config, measures_clip, refuse_clip_settings, with_settings
 from curlshot.data.arguments import checked_path, checked_paths
 from curlshot.data.convert import check_conversion, write_converted
 from curlshot.data.errors import SceneError
@@ -135,7 +135,7 @@ def measure(
         Where the input cannot be used; one line says why.
     """
     files = find_inputs(inputs)
-    if are_tables(files) and not config.video.clip:
+    if are_tables(files) and not measures_clip(files, config):
         refuse_clip_settings(files[0], config)
         return _import(files, config)
     from curlshot.vision.measure import measure_clip

@@ -25,6 +25,7 @@ from curlshot.data.version import VERSION
 from curlshot.pipeline import analyse, convert, measure, run
 
 if TYPE_CHECKING:
+    from curlshot.data.measurement import Measurement
     from curlshot.outcome import Run
 
 CHECK_DPI = 110
@@ -98,7 +99,7 @@ def _do_track(arguments: argparse.Namespace, bars: Bars) -> str:
     radius = config.stones.radius
     measured = measure(arguments.inputs, config.replace(clip=True), bars)
     tracks = smoothed(measured.table, detect_hits(measured.table, radius), radius=radius)
-    with staged(folder, replaces=left_by_earlier_run(folder, measured.files)) as stage:
+    with staged(folder, replaces=left_by_earlier_run(folder, _read(measured, arguments))) as stage:
         write_tracks(tracks, stage / "tracks.csv", measured.table)
         write_table(camera_columns(measured.cameras), stage / "camera.csv")
     stones = set(tracks["stone"].tolist())
@@ -126,9 +127,14 @@ def _do_estimate(arguments: argparse.Namespace, bars: Bars) -> str:
     refuse_clips(find_inputs(arguments.inputs), "run")
     measured = measure(arguments.inputs, config, bars)
     done = analyse(measured, config, bars)
-    with staged(folder, replaces=left_by_earlier_run(folder, measured.files)) as stage:
+    with staged(folder, replaces=left_by_earlier_run(folder, _read(measured, arguments))) as stage:
         write_estimates(stage, done)
     return replace(done, out=folder).summary()
+
+
+def _read(measured: Measurement, arguments: argparse.Namespace) -> tuple[Path, ...]:
+    """Return the files that were read, with that of the settings."""
+    return measured.files if arguments.config is None else (*measured.files, arguments.config)
 
 
 def _do_convert(arguments: argparse.Namespace, _: Bars) -> str:

@@ -198,6 +198,13 @@ def no_house_option(parser: argparse.ArgumentParser) -> None:
         default=None,
         help="the origin of tables is not the tee of a house",
     )
+    parser.add_argument(
+        "--tee",
+        dest="no_house",
+        action="store_false",
+        default=None,
+        help="the origin of tables is the tee of a house, whatever --config has (it is)",
+    )
 
 
 def table_options(parser: argparse.ArgumentParser) -> None:

@@ -103,18 +103,15 @@ def _run(commands: Any) -> None:
     config_option(parser)
     parser.add_argument(
         "--clip",
-        action="store_true",
-        default=None,
-        help="measure the clip of a Tracker project, not the marks in it",
+        action=argparse.BooleanOptionalAction,
+        help="whether to measure the clip of a Tracker project, not the marks in it (the marks)",
     )
     assumption_options(parser)
     units_option(parser)
     parser.add_argument(
-        "--no-overlay",
-        dest="overlay",
-        action="store_false",
-        default=None,
-        help="do not write the annotated clip overlay.mp4",
+        "--overlay",
+        action=argparse.BooleanOptionalAction,
+        help="whether to write the annotated clip overlay.mp4 (it is written)",
     )
     parser.add_argument(
         "--jobs",

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from curlshot.config import Config
+from curlshot.config import CONFIG_FILE, Config
 from curlshot.data.messages import OPTIONS, option
 
 MOST_FILES = 8
@@ -21,19 +21,18 @@ def command_of(files: Sequence[Path], config: Config) -> str:
     files : sequence of Path
         What was read; of many the folder is named.
     config : Config
-        The settings of the run.
+        The settings of the run. Those that only a file can set are in the config.toml of its
+        folder.
     """
     inputs = [file.name for file in files]
     if len(files) > MOST_FILES:
         inputs = [f"{files[0].parent.name}/"]
     words = ["curlshot", "run", *inputs]
-    usual = Config().values()
-    values = config.values()
-    changed = [name for name in values if values[name] != usual[name]]
-    for name in changed:
-        words += _option(name, values[name]) if name in OPTIONS else []
+    changed = config.changed()
+    for name, value in changed.items():
+        words += _option(name, value) if name in OPTIONS else []
     if not OPTIONS.issuperset(changed):
-        words += ["--config", "SETTINGS.toml"]  # what only a file can set
+        words += ["--config", CONFIG_FILE]  # what only a file can set
     return shlex.join(words)
 
 

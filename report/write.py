@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from curlshot.config import CONFIG_FILE
+from curlshot.data.files import write_text
 from curlshot.data.messages import as_options
 from curlshot.data.progress import Progress, no_progress
 from curlshot.data.version import VERSION
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 
 WRITTEN = (
     "tracks.csv", "camera.csv", "results.json", "simulation.csv", "report.html", "overlay.mp4",
-    "figures", "tables", "posterior.csv", "ensemble.json",
+    "figures", "tables", "posterior.csv", "ensemble.json", CONFIG_FILE,
 )  # fmt: skip
 """All that a run may write into its folder."""
 
@@ -92,7 +94,7 @@ def write_run(stage: Path, run: Run, progress: Progress = no_progress) -> None:
 
 
 def write_estimates(stage: Path, run: Run) -> None:
-    """Write the estimates of a run, and the shots that may have been it."""
+    """Write the estimates of a run, the shots that may have been it, and changed settings."""
     from curlshot.data.results_file import write_results
     from curlshot.data.tracks import write_table
     from curlshot.physics.prediction.ensemble import write_ensemble
@@ -102,3 +104,6 @@ def write_estimates(stage: Path, run: Run) -> None:
         write_table(run.posterior, stage / "posterior.csv")
     if run.ensemble is not None:
         write_ensemble(run.ensemble, stage / "ensemble.json")
+    if run.config.changed():
+        # Paths in a file are relative to it, and those of the settings to the current folder.
+        write_text(stage / CONFIG_FILE, run.config.absolute().to_toml())

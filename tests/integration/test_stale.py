@@ -10,7 +10,9 @@ import pytest
 
 from curlshot import pipeline
 from curlshot.cli.main import main
+from curlshot.config import Config
 from curlshot.data.tracks import TRACK_COLUMNS
+from curlshot.outcome import load
 from curlshot.report.write import WRITTEN
 
 OLD = "old"
@@ -60,6 +62,21 @@ def test_estimates_stay_beside_their_own_tracks(folder):
     written = {"results.json", "ensemble.json"}
     assert left(folder) == {*written, "tracks.csv", "camera.csv", "notes.txt"}
     assert tracks.read_text() == text
+
+
+def test_changed_settings_are_written_and_restored(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    tracks, preset = glide(tmp_path / "other.csv"), folder / "config.toml"
+    preset.write_text("[search]\nmin_evidence = 1.2\n[camera]\ncamera = '../camera.csv'\n")
+    words = ["estimate", str(tracks), "-o", str(folder), "-q", "--units", "ft"]
+    assert main([*words, "--config", str(preset)]) == 0
+    assert left(folder) == {"results.json", "ensemble.json", "config.toml", "notes.txt"}
+    camera = (tmp_path / "camera.csv").resolve()
+    expected = Config().replace(min_evidence=1.2, units="ft", camera=camera)
+    assert load(folder).config == expected
+    assert main(words[:-2]) == 0
+    assert "config.toml" not in left(folder)
+    assert load(folder).config == Config()
 
 
 def test_tracks_stay_alone(folder):

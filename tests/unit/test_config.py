@@ -9,7 +9,7 @@ from curlshot import pipeline
 from curlshot.cli.arguments import config_of
 from curlshot.cli.main import main
 from curlshot.cli.parser import command_line
-from curlshot.config import Config, refuse_table_settings
+from curlshot.config import Config, measures_clip, refuse_clip_settings, refuse_table_settings
 from curlshot.data.errors import InputError
 from curlshot.data.messages import OPTIONS
 
@@ -19,6 +19,20 @@ def test_a_tab_is_refused_where_nothing_has_tabs() -> None:
         refuse_table_settings(Path("shot.mp4"), Config().replace(tab="a", length_unit="cm"))
     with pytest.raises(InputError, match="only tables take `names`"):
         refuse_table_settings(Path("shot.trz"), Config().replace(names={"A": "mass A"}, tab="a"))
+
+
+def test_settings_of_a_preset_that_do_not_fit_are_ignored() -> None:
+    text = "[video]\nclip = true\n[camera]\ncamera_height = 6.4\n[tables]\nno_house = true"
+    preset = Config.from_text(text)
+    clip, table = Path("shot.mp4"), Path("tracks.csv")
+    refuse_clip_settings(table, preset.replace(radius=0.1))
+    refuse_table_settings(clip, preset.replace(radius=0.1))
+    with pytest.raises(InputError, match="only clips take `camera_height`; tracks"):
+        refuse_clip_settings(table, preset.replace(camera_height=6.4))
+    with pytest.raises(InputError, match="only tables take `angle_unit`; a clip"):
+        refuse_table_settings(clip, preset.replace(angle_unit="deg"))
+    assert measures_clip([Path("shot.trk")], preset) and not measures_clip([table], preset)
+    assert measures_clip([table], Config().replace(clip=True))
 
 
 def test_a_project_has_tabs_as_a_clip_and_as_a_camera() -> None:
@@ -142,6 +156,24 @@ def test_paths_in_a_file_are_relative_to_it_and_the_command_line_wins(tmp_path: 
     assert Config.from_file(path).camera.camera == tmp_path / "camera.csv"
     parsed = command_line("1").parse_args(["run", "--config", str(path), "--radius", "0.145"])
     assert config_of(parsed).stones.radius == 0.145
+
+
+@pytest.mark.parametrize(
+    ("line", "word", "name", "value"),
+    [
+        ("[video]\nclip = true", "--no-clip", "clip", False),
+        ("[tables]\nno_house = true", "--tee", "no_house", False),
+        ("[report]\noverlay = false", "--overlay", "overlay", True),
+    ],
+)
+def test_the_command_line_reverses_a_file(
+    tmp_path: Path, line: str, word: str, name: str, value: bool
+) -> None:
+    path = tmp_path / "club.toml"
+    path.write_text(line, encoding="utf-8")
+    words = ["run", "a.mp4", "--config", str(path)]
+    assert config_of(command_line("1").parse_args(words)).values()[name] is not value
+    assert config_of(command_line("1").parse_args([*words, word])).values()[name] is value
 
 
 def test_an_unknown_setting_in_python_names_the_nearest() -> None:

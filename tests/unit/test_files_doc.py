@@ -22,7 +22,7 @@ OTHERS = {
     "schema", "model", "sample", "hits", "start", "shots", "input", "thrown", "changes", "samples",
     "throw_sd", "direction", "warnings", "size", "inertia", "loss", "local", "shot_fit",
     "finite-differences", "constant", "fit", "sd_", "--samples", "--fps", "curlshot.load",
-    "#rrggbb", "curlshot simulate", "SHOT.toml",
+    "--config", "#rrggbb", "curlshot simulate", "SHOT.toml",
 }  # fmt: skip
 """What else the page names."""
 
@@ -65,8 +65,7 @@ def test_each_column_and_key_is_told(name: str) -> None:
 
 
 def test_nothing_else_is_told() -> None:
-    files = {
-        name for name in re.findall(r"`([^`]+)`", PAGE) if re.search(r"\.(csv|json|png)$", name)
-    }
+    names = re.findall(r"`([^`]+)`", PAGE)
+    files = {name for name in names if re.search(r"\.(csv|json|png|toml)$", name)}
     known = set().union(*WRITTEN.values()) | OTHERS | files
-    assert set(re.findall(r"`([^`]+)`", PAGE)) <= known
+    assert set(names) <= known

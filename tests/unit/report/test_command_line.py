@@ -39,6 +39,11 @@ def test_the_same_settings_come_back(settings):
     assert config_of(arguments) == settings
 
 
+def test_what_only_a_file_can_set_is_in_the_file_of_the_run():
+    said = words([Path("shot.mp4")], Config().replace(min_evidence=1.2, fps=25.0))
+    assert said == ["curlshot", "run", "shot.mp4", "--fps", "25.0", "--config", "config.toml"]
+
+
 def test_many_pictures_are_named_by_their_folder():
     files = [Path(f"/clips/take 7/{k:03}.png") for k in range(MOST_FILES + 1)]
     assert words(files, Config()) == ["curlshot", "run", "take 7/"]
