@@ -479,7 +479,7 @@ class Config:
 
     def __post_init__(self) -> None:
         for item in fields(self):
-            kind: Any = item.default_factory
+            kind: Any = frozenset if item.name == "preset" else item.default_factory
             check_type(f"`{item.name}`", getattr(self, item.name), kind, f"a {kind.__name__}")
 
     def replace(self, **settings: Any) -> Self:
