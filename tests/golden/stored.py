@@ -10,9 +10,10 @@ from __future__ import annotations
 import gzip
 import json
 import math
+import re
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +21,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+import curlshot
 from curlshot import pipeline
 from curlshot.data.results_file import write_results
+from curlshot.report.summary import simulation_json
 from curlshot.synthetic.camera import Lens
-from curlshot.tests.golden.cases import SAMPLE, SETTINGS, shared_tables
+from curlshot.tests.golden.cases import SAMPLE, SETTINGS, SHOTS, shared_tables
 from curlshot.tests.golden.clips import CLIPS
 from curlshot.tests.golden.compare import IGNORED, WORDS, flat, renamed
 from curlshot.tests.golden.tables import WRITERS
@@ -32,6 +35,10 @@ Floats = NDArray[np.float64]
 Place = tuple[str, ...]
 
 EXPECTED = Path(__file__).parent / "expected"
+SEASON = ("table_tab_full", "table_one_hit")
+CHECKED = "lines_360"
+"""Cases that are combined, and the clip that is checked."""
+
 EVERY = 5
 """Of the frames of a run one in so many is kept."""
 
@@ -118,7 +125,8 @@ COLOUR = 8
 def names() -> list[str]:
     """Return the names of all stored cases of the first set."""
     return [
-        SAMPLE, *(f"clip_{name}" for name in CLIPS), *(f"table_{name}" for name in WRITERS)
+        SAMPLE, *(f"clip_{name}" for name in CLIPS), *(f"table_{name}" for name in WRITERS),
+        *(f"simulate_{name}" for name in SHOTS), "season", "check",
     ]  # fmt: skip
 
 
@@ -136,6 +144,11 @@ def inputs(name: str, folder: Path) -> list[Path]:
 
 def measured(name: str, folder: Path) -> dict[str, Any]:
     """Run a case in this process and return what is kept of it."""
+    kind, _, rest = name.partition("_")
+    if kind == "simulate":
+        return {"results": _kept(_simulated(rest, folder))}
+    if kind in ("season", "check"):
+        return {"results": _kept(_combined(folder) if kind == "season" else _checked())}
     done = pipeline.run(inputs(name, folder), overlay=False, **SETTINGS.get(name, {}))
     write_results(done.results, folder / "results.json")
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
@@ -147,6 +160,33 @@ def measured(name: str, folder: Path) -> dict[str, Any]:
         kept["camera"] = _thinned(pd.DataFrame(done.cameras))
         kept["size"] = (1280, 720) if name == SAMPLE else CLIPS[name[5:]]().camera.size
     return kept
+
+
+def _simulated(name: str, folder: Path) -> dict[str, Any]:
+    """Return where the stones of a written shot end, and its hits."""
+    path = folder / "SHOT.toml"
+    path.write_text(SHOTS[name][0], encoding="utf-8")
+    found = simulation_json(curlshot.simulate(path).simulation)
+    return {"rest": found["stones"], "events": found["hits"]}
+
+
+def _combined(folder: Path) -> dict[str, Any]:
+    """Return e and μ of two shots together."""
+    runs = {}
+    for name in SEASON:
+        (folder / name).mkdir()
+        runs[name] = pipeline.run(inputs(name, folder / name), overlay=False)
+    return {name: asdict(mean) for name, mean in curlshot.combine(runs).means.items()}
+
+
+def _checked() -> dict[str, Any]:
+    """Return how many frames and stones a check of a clip found."""
+    _, lines = curlshot.check(CLIPS[CHECKED]().render())
+    return {"frames": sum("frame" in line for line in lines), "counts": _numbers(lines[1])}
+
+
+def _numbers(line: str) -> list[int]:
+    return [int(text) for text in re.findall(r"(?<![\d.])\d+(?![\d.])", line)]
 
 
 def _kept(value: Any) -> Any:
