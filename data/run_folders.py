@@ -69,11 +69,6 @@ def season_folder(out: str | Path) -> Path:
     return folder
 
 
-def find_runs(names: str | Path | Sequence[str | Path]) -> dict[str, Results]:
-    """Read the results of runs, found as `find_results` does; see `read_runs`."""
-    return read_runs(find_results(names))
-
-
 def read_runs(files: Mapping[str, Path]) -> dict[str, Results]:
     """Read the results of runs, by name.
 

@@ -8,7 +8,7 @@ import pytest
 from curlshot.data.errors import InputError
 from curlshot.data.results import Estimate, Friction, Input, Results
 from curlshot.data.results_file import write_results
-from curlshot.data.run_folders import apart, find_runs, season_folder
+from curlshot.data.run_folders import apart, find_results, read_runs, season_folder
 from curlshot.season.together import combine
 
 
@@ -36,16 +36,16 @@ def test_names_that_are_no_text_are_told_as_far_as_they_are(tmp_path: Path) -> N
 
 def test_runs_are_found_in_folders_of_folders(tmp_path: Path) -> None:
     one, two = written(tmp_path / "season" / "one"), written(tmp_path / "season" / "two")
-    assert list(find_runs([tmp_path / "season"])) == ["one", "two"]
-    assert list(find_runs(str(one))) == ["one"]
-    assert list(find_runs([two, one / "results.json", two])) == ["two", "one"]
+    assert list(read_runs(find_results([tmp_path / "season"]))) == ["one", "two"]
+    assert list(read_runs(find_results(str(one)))) == ["one"]
+    assert list(read_runs(find_results([two, one / "results.json", two]))) == ["two", "one"]
     # Not every shell looks for what matches a pattern.
-    assert list(find_runs(str(tmp_path / "sea*" / "*o*"))) == ["one", "two"]
+    assert list(read_runs(find_results(str(tmp_path / "sea*" / "*o*")))) == ["one", "two"]
 
 
 def test_a_run_without_results_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="name the folders of runs"):
-        find_runs([tmp_path])
+        read_runs(find_results([tmp_path]))
 
 
 def test_runs_of_stones_and_of_pucks_are_no_season(tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_runs_of_stones_and_of_pucks_are_no_season(tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match=r"^pucks: its discs have a radius of 0.0465 m, .*0.1455 m"
     ):
-        find_runs(runs)
+        read_runs(find_results(runs))
 
 
 def test_a_season_is_not_written_into_the_folder_of_a_run(tmp_path: Path) -> None:
@@ -65,7 +65,9 @@ def test_a_season_is_not_written_into_the_folder_of_a_run(tmp_path: Path) -> Non
 
 def test_the_files_of_a_season_name_options(tmp_path: Path) -> None:
     run = written(tmp_path / "run")
-    results = replace(find_runs(run)["run"], warnings=("friction: wrong frame rate (`fps`)",))
+    results = replace(
+        read_runs(find_results(run))["run"], warnings=("friction: wrong frame rate (`fps`)",)
+    )
     write_results(results, run / "results.json")
     season = combine(run, tmp_path / "season")
     assert season.shots["note"].tolist() == ["friction: wrong frame rate (`fps`)"]

@@ -9,7 +9,7 @@ import pytest
 from curlshot.data.errors import InputError
 from curlshot.data.results import Estimate
 from curlshot.data.results_file import write_results
-from curlshot.data.run_folders import find_runs
+from curlshot.data.run_folders import find_results, read_runs
 from curlshot.physics.statistics.season import hits_table, pooled, shots_table
 from curlshot.report.season import season_figure
 from curlshot.season.together import combine
@@ -50,29 +50,31 @@ def test_runs_of_one_name_are_told_apart(tmp_path: Path) -> None:
         (tmp_path / parent / "shot").mkdir(parents=True)
         shot = replace(SHOT, restitution=Estimate(value, 0.01))
         write_results(shot, tmp_path / parent / "shot" / "results.json")
-    found = find_runs([tmp_path / "p" / "shot", tmp_path / "q" / "shot", tmp_path / "p" / "shot"])
+    found = read_runs(
+        find_results([tmp_path / "p" / "shot", tmp_path / "q" / "shot", tmp_path / "p" / "shot"])
+    )
     assert list(found) == ["p-shot", "q-shot"]
     assert combine(found).shots["shot"].tolist() == ["p-shot", "q-shot"]
 
 
 def test_folder_without_runs_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="name the folders of runs"):
-        find_runs([tmp_path])
+        read_runs(find_results([tmp_path]))
     with pytest.raises(InputError, match="no runs given"):
-        find_runs([])
+        read_runs(find_results([]))
 
 
 def test_runs_of_a_folder_are_in_their_natural_order(tmp_path: Path) -> None:
     names = ["end 1 [red]", "end 2", "end 10"]
     for name in names:
         write_results(SHOT, tmp_path / "season [a]" / name / "results.json")
-    assert list(find_runs([tmp_path / "season [a]"])) == names
+    assert list(read_runs(find_results([tmp_path / "season [a]"]))) == names
     by_shell = sorted((tmp_path / "season [a]").iterdir())
-    assert list(find_runs(by_shell)) == names
+    assert list(read_runs(find_results(by_shell))) == names
 
 
 def test_dots_in_names_of_folders_stay(tmp_path: Path) -> None:
     for name in ("2026.01.05", "2026.01.06"):
         (tmp_path / name).mkdir()
         write_results(SHOT, tmp_path / name / "results.json")
-    assert list(find_runs([tmp_path])) == ["2026.01.05", "2026.01.06"]
+    assert list(read_runs(find_results([tmp_path]))) == ["2026.01.05", "2026.01.06"]
